@@ -72,6 +72,9 @@ def brackets(stage, unit, *factors):
 def test_the_line_of_a_bracket_has_the_largest_held_and_the_smallest_not_held():
     (line,) = answersText(brackets("lean", "g", 0.2, -0.6, 0.35, -0.4, 0.3, -0.5))
     assert line == "lean: factor held 0.35 g (6 stages); factor not held 0.4 g"
+    # what was held at last, in a smaller step
+    (line,) = answersText(brackets("lean", "g", 0.2, -0.3, 0.35))
+    assert line == "lean: factor held 0.35 g (3 stages); factor not held: not found: none"
     (line,) = answersText(brackets("lean", "g", 0.2))
     assert line == "lean: factor held 0.2 g; factor not held: not found: none"
 

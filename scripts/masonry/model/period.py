@@ -29,9 +29,9 @@ FEWEST = 10  # readings in half a period, for half a per cent
 #: Duration of the first side over its half period, so that the difference has its zero [-].
 BEYOND = 1.1, 2.0
 #: Search for buckling: acceleration over gravity [-], time between readings, time after which a
-#: push that has not come back counts as growing [s], first number of readings, and momentum of a
-#: structure that buckles over that of a free body [-].
-SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER = 1e-6, 5e-4, 5.0, 32, 1.1
+#: push that has not come back counts as growing [s], first number of readings, momentum of a
+#: structure that buckles over that of a free body [-], and readings in a period on springs.
+SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER, SLOW_LOOKS = 1e-6, 5e-4, 5.0, 32, 1.1, 400
 
 
 def smallPeriod(structure, direction, longest):
@@ -118,29 +118,34 @@ def firstMode(structure, direction, longest):
 
 def buckles(structure, direction):
     """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`,
-    or within a longer period on springs. Afterwards the scene is as before, to the last bit. It
-    takes the steps of some periods, and sees modes in which the structure moves to one side."""
+    or within a longer period on springs; and how many steps it took to see that. Afterwards the
+    scene is as before, to the last bit. It sees modes in which the structure moves to one side."""
     before = saveScene("null")
     scaling = structure.args.density_scaling**0.5
-    every = max(1, round(LOOK * scaling / O.dt))
-    longest = max(LONGEST * scaling, structure.supports.slowest())
+    slowest = structure.supports.slowest()
+    every = max(1, round(max(LOOK * scaling, slowest / SLOW_LOOKS) / O.dt))
+    longest = max(LONGEST * scaling, slowest)
     looks, most = FIRST_LOOKS, longest / (every * O.dt)
+    momenta = [_momenta(structure, direction, share, every) for share in (SMALL, -SMALL)]
+    states, found = [before, before], ([], [])  # of both sides
     try:
         while True:
-            sides = []
-            for share in (SMALL, -SMALL):
-                momenta = _momenta(structure, direction, share, every)
-                sides.append([next(momenta) for _ in range(looks)])
-                loadScene(before)
-            momentum = [there - back for there, back in zip(*sides)]
-            if min(momentum) <= 0:
-                return False
+            for side, one in enumerate(momenta):
+                loadScene(states[side])
+                found[side].extend(next(one) for _ in range(looks - len(found[side])))
+                states[side] = saveScene("null")
+            momentum = [there - back for there, back in zip(*found)]
             free = looks * momentum[0]  # of a free body
-            if not momentum[-1] <= FASTER * free or looks >= most:
-                return True
-            looks *= 4
-    except RuntimeError:  # it falls
-        return True
+            if min(momentum) <= 0:
+                grows = False
+            elif not momentum[-1] <= FASTER * free or looks >= most:
+                grows = True
+            else:
+                looks *= 2
+                continue
+            return grows, 2 * looks * every
+    except (RuntimeError, ValueError):  # it falls, to no finite state
+        return True, every * sum(map(len, found))
     finally:
         loadScene(before)
 

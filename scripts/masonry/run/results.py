@@ -33,7 +33,8 @@ or None:
 - ``warnings``: sentences on what the numbers suffer from; ``notes``: warnings and notes that were
   said, each once, with ``text``, ``stage``, its ``number`` and ``time_s``, which are empty and 0
   before the first stage
-- ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames``
+- ``seconds``: wall-clock time of ``setup``, with first periods; of ``steps``, with those that look
+  for buckling; of ``rows`` and ``frames``
 - ``kinds``: names of the kinds of joints, in the order of their numbers in the ParaView files
 - ``collapsed``; ``collapse``: what has fallen, and how far; ``ended``: how the last stage ended
   (:mod:`masonry.stages.answers`)

@@ -50,7 +50,7 @@ class RunState:
     atRest: str = ""  # the last state at rest, as text, for stepBack()
     places: list = field(default_factory=list)  # masonry.model.motion.Motion.places
     far: float = 0.0  # masonry.model.motion.Motion.far
-    answers: dict = field(default_factory=dict)  # of the stages, by their number
+    answers: dict = field(default_factory=dict)  # by the keys of masonry.stages.answers.keep
     notes: list = field(default_factory=list)  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     #: When the widest crack was looked for last, and its width: number of the time step, and [mm].

@@ -224,8 +224,9 @@ class Scene:
         """What the stages have found, in their order: dicts as in
         :class:`masonry.stages.answers.Answer`, with the ``stage`` and its ``number``."""
         kept, entered = self.running.state.answers, self.running.entered
-        numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
-        return [one for number in numbers for one in kept[number]]
+        number = lambda key: int(key.partition(" ")[0])
+        keys = [key for key in sorted(kept, key=number) if number(key) <= entered]
+        return [one for key in keys for one in kept[key]]
 
     @property
     def factor(self) -> float:

@@ -40,6 +40,13 @@ class Answer:
     uncertainty: float | None = None
 
 
+def keep(scene, key, stage, number, answers):
+    """Keep the answers of a stage, in place of those that had its key: its number, and perhaps a
+    word after it."""
+    kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
+    scene.running.state.answers = {**scene.running.state.answers, key: kept}
+
+
 def answerText(answer, what=None):
     """An entry of ``answers`` of run.json as a line; ``what``: what it is of, if not its stage."""
     head = f"{what or answer['stage']}: {answer['name'].replace('_', ' ')}"
@@ -79,12 +86,15 @@ def answersText(answers, stages=()):
 
 
 def _searchText(answers, what):
-    """The line of stages that looked for one load."""
-    texts = []
+    """The line of stages that looked for one load. What was not held and is held in a later one, in
+    a smaller step, does not count."""
+    texts, held = [], -math.inf
     for name, choose in (("factor_held", max), ("factor_not_held", min)):
         found = [one for one in answers if one["name"] == name]
-        known = [one for one in found if one["value"] is not None]
-        one = choose(known, key=lambda one: one["value"]) if known else found[-1]
+        known = [one for one in found if one["value"] is not None and one["value"] > held]
+        unknown = [one for one in found if one["value"] is None] or found
+        one = choose(known, key=lambda one: one["value"]) if known else unknown[-1]
+        held = one["value"] if known else held
         texts.append(answerText(one, what))
     count = len({one["number"] for one in answers})
     stages = f" ({count} stages)" if count > 1 else ""

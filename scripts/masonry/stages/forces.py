@@ -86,7 +86,8 @@ def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = No
     scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
     :param force: three numbers [N]; zeros take the load away
-    :param longest: time in the scene after which it is given up [s]; None: 4 s
+    :param longest: time in the scene after which it is given up [s]; None: 4 s, and longer while
+        the motion dies away
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     return _putOn(scene, "load", _forceOn(scene, target, force, "load"), longest)

@@ -15,7 +15,7 @@ from ..model.load_names import nameOfLean
 from .bounds import findBound
 from .growing import TRIAL, WITHIN, Tried, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
-from .answers import AT_REST, MOVING
+from .answers import AT_REST, MOVING, Answer, keep
 from .stage import Duration, stage
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
@@ -187,7 +187,8 @@ def lean(
     they put on.
 
     :param factor: [g]
-    :param longest: time in the scene after which it is given up [s]; None: 4 s
+    :param longest: time in the scene after which it is given up [s]; None: 4 s, and longer while
+        the motion dies away
     """
     towards = sideways(scene, towards, "lean")
     findBound(scene, "lean", towards)
@@ -199,7 +200,8 @@ def putOn(scene, name, load, longest, over=0.0):
     """Let a load grow within a short time, and wait until the structure is at rest or falls. With
     ``--preset bound`` it stays if limit analysis finds that it is carried.
 
-    :param longest: [s]; None: :data:`masonry.stages.growing.TRIAL`, and longer on soft springs
+    :param longest: [s]; None: :data:`masonry.stages.growing.TRIAL`, longer on soft springs, and
+        while the motion dies away
     :param over: time in which it grows at least [s]
     """
     if scene.limitAnalysisOnly:
@@ -223,9 +225,9 @@ def putOn(scene, name, load, longest, over=0.0):
         load.put([was + share * (end - was) for was, end in zip(first, ends)])
         model.loading.loadFactor = share * at.goal
 
+    dying, vertical = longest is None, abs(towards[2]) > 0.5
     longest = longest or max(TRIAL, WAITED * model.supports.slowest())
-    vertical = abs(towards[2]) > 0.5
-    ended = waitForRest(scene, at, longest, growing, over=over, buckling=vertical)
+    ended = waitForRest(scene, at, longest, growing, over, buckling=vertical, dying=dying)
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
     return ended
@@ -240,6 +242,11 @@ def bracket(
     within: Width = 0.01,
 ) -> tuple[float, float]:
     """Find the largest load that the structure carries, by halving from the last state at rest.
+
+    A large step of the load can throw a structure over that would carry it. So at the end the
+    upper end is tried again from the state at rest under the lower one; if it is carried now, the
+    search goes on above it. Both ends are answers of the run, ``factor_held`` and
+    ``factor_not_held``.
 
     :param carries: function of a load factor that sets loads and stages, and returns whether the
         structure is at rest under it, for example ``lambda f: scene.lean(f) == AT_REST``
@@ -257,17 +264,31 @@ def bracket(
         if not carries(low):
             scene.stepBack()
             raise Refused(f"bracket: the structure does not carry {low:g}, the lower end")
-        if carries(high):
-            raise Refused(f"bracket: the structure carries {high:g}, the upper end")
-        scene.stepBack()
         within = within if scene.share == 1 else max(within, 0.5)
-        while high - low > within * high:
-            middle = 0.5 * (low + high)
-            if carries(middle):
-                low = middle
-            else:
-                high = middle
+        trial, failures = high, []  # loads that were not carried, with those below them then
+        while True:
+            if not carries(trial):
+                failures.append((trial, low))
                 scene.stepBack()
-        return low, high
+            else:
+                low = trial
+                failures = [one for one in failures if one[0] > low]
+            if not failures:
+                raise Refused(f"bracket: the structure carries {low:g}, the upper end")
+            lost, source = failures[-1]
+            if lost - low > within * lost:
+                trial = 0.5 * (low + lost)
+            elif source < low:
+                trial = lost
+                failures.pop()
+            else:
+                break
+        how = "factor for the function of bracket() that the structure"
+        held = Answer("factor_held", "-", low, f"the largest {how} carried")
+        failed = Answer("factor_not_held", "-", lost, f"the smallest {how} did not carry")
+        if not scene.limitAnalysisOnly:
+            # of no stage: how many trials there are differs from row to row of a study
+            keep(scene, f"{scene.running.entered} bracket", "bracket", 0, [held, failed])
+        return low, lost
     finally:
         scene.bracketing = False

@@ -6,13 +6,16 @@ joints give way little by little. So the run finds by trials what it carries. Du
 keeps states to go back to. It then restores one of these states, keeps the load constant, and waits
 for rest: the load is held if the structure comes to rest under it. Between the largest load that
 was held and the smallest that was not it goes on in halves, from the state at rest under the first.
-At the end the load that was not held is tried once more from that state, in which nothing moves: so
-it does not matter how fast the load grew.
+A load that is put on in a large step can throw a structure over that would hold it. So at the end
+the load that was not held is tried again from the state at rest just below it, if that was not its
+trial already. If it is held now, the search goes on above it. So it matters neither how fast the
+load grew, nor which loads were tried.
 
 A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the
 largest load that was held is checked with a small push to the side
-(:func:`masonry.model.period.buckles`). If that grows, the load is not held, and every later
-trial is checked so.
+(:func:`masonry.model.period.buckles`), and so is the state from which a long trial began. If the
+push grows, the load is not held. The search then begins again at the states at rest below it, and
+every later trial is checked so.
 """
 
 import base64
@@ -26,21 +29,23 @@ from yade import O
 
 from .._masonry import loadScene, saveScene
 from ..model.loading import smooth
-from ..model.motion import FALLEN, REST
+from ..model.motion import FALLEN
 from ..errors import Collapsed
 from ..run.checkpoints import record
 from ..terminal import say
-from .rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, WAITED, buckles, growthTime
+from .rest import EVERY, WAITED, Waiting, buckles, growthTime
 from .answers import AT_REST, DONE, Answer
 from .stage import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
 #: Share of the whole growth: below it the bracket is as wide as there.
 LEAST = 0.05
-#: [s] in the scene after which a trial is given up, or later on soft springs
+#: [s] in the scene after which a trial is given up, or later on soft springs, and while the motion
+#: dies away
 TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
-KEPT_BYTES = 100e6  # of all of them, which checkpoints of the growth and the search have
+#: Of all of them, and of all states at rest; checkpoints of the growth and the search have both.
+KEPT_BYTES = 100e6
 #: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this
 #: share of its speed [-], and is twice as fast as the fastest one in the first half of the trial
 #: (:meth:`masonry.model.motion.Motion.fastest`). Blocks at a crack that opens suddenly can be as
@@ -55,7 +60,7 @@ class Reason(StrEnum):
 
     FELL = "it fell"
     ACCELERATED = "it moved faster and faster"
-    MOVING = "it was still moving when the trial ended"
+    MOVING = "its motion did not die away"
     BUCKLES = "it buckles: a small push sideways grows"
 
 
@@ -71,7 +76,8 @@ class Tried:
 class Failure(Tried):
     """A load that was not held."""
 
-    fromRest: bool = False  # whether its trial began at rest
+    #: Factor of the state at rest from which its trial began; below 0 if that was none.
+    source: float = -1.0
     reason: Reason = Reason.FELL
 
     def __post_init__(self):
@@ -79,14 +85,12 @@ class Failure(Tried):
 
 
 @dataclass
-class Trial:
+class Trial(Waiting):
     """A trial that is going on."""
 
     source: float = 0.0  # factor of the state from which it begins
     factor: float = 0.0
     fromRest: bool = False  # whether that state is at rest
-    steps: int = 0  # so far
-    quiet: int = 0  # checks that found the structure at rest, one after the other
     speeds: Sequence[float] = ()  # Motion.fastest after 1, 2, 4, ... checks [-]
 
 
@@ -109,12 +113,20 @@ class Growing(Timed):
     #: checked so.
     buckled: bool = False
     tried: Sequence[float] = ()  # factors of all trials so far
-    held: Tried | None = record(Tried)  # the largest load that was held
-    heldState: str = ""  # at rest under it
-    failure: Failure | None = record(Failure)  # the smallest load that was not
-    #: Trials above a load that was not held when it grew, but is held from rest.
+    since: int = 0  # how many of them were made before the search began again
+    #: Of all loads that were held, growing: the factor, the displacement [mm], and the state at
+    #: rest under it, as text.
+    rests: Sequence[Any] = ()
+    steady: float = -1.0  # the largest of them that was seen not to buckle
+    failure: Failure | None = record(Failure)  # the smallest load that was not held
+    #: Trials above a load that was not held first, but is held from the state at rest below it.
     climbs: int = 0
     trial: Trial | None = record(Trial)
+
+    @property
+    def held(self):
+        """The largest load that was held, or None."""
+        return Tried(*self.rests[-1][:2]) if self.rests else None
 
 
 def grow(scene, name, load, duration, within=WITHIN):
@@ -288,7 +300,10 @@ class _Search:
         at = self.at
         while not at.finished and (at.trial or self._begin()):
             reason = self._wait()
-            if reason is None and at.buckled and self._buckles():
+            if reason is Reason.BUCKLES:
+                self._beginBelow()
+                continue
+            if reason is None and at.buckled and self._buckles(at.trial.factor):
                 reason = Reason.BUCKLES
             self._note(reason)
 
@@ -296,8 +311,9 @@ class _Search:
         """Take the scene to where the stage ends, and return how it ended."""
         at, running = self.at, self.running
         stands = not at.fell and at.failure is None and at.held
+        at.rests = at.rests[-1:]
         if at.held:
-            self.model.atRest = base64.b64decode(at.heldState)
+            self.model.atRest = base64.b64decode(at.rests[-1][2])
         if stands:
             if running.readings.time != O.time:
                 running.record()
@@ -318,28 +334,50 @@ class _Search:
         at = self.at
         if self._choose():
             return True
-        if at.held is None or at.buckled or not self._buckles():
+        if at.held is None or at.buckled or at.held.factor <= at.steady:
             return False
-        at.buckled, at.climbs = True, 0
-        at.failure = Failure(**vars(at.held), fromRest=True, reason=Reason.BUCKLES)
-        at.held = None
+        _load(at.rests[-1][2])
+        return self._buckles(at.held.factor) and self._beginBelow()
+
+    def _beginBelow(self):
+        """Begin again below the largest load that was held, which buckles: at the largest one under
+        which the state at rest does not. Returns whether there is a trial."""
+        at = self.at
+        low = sum(factor <= at.steady for factor, _, _ in at.rests) - 1
+        high = len(at.rests) - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            factor, _, state = at.rests[middle]
+            _load(state)
+            if self._buckles(factor):
+                high = middle
+            else:
+                low = middle
+        at.failure = Failure(*at.rests[high][:2], reason=Reason.BUCKLES)
+        at.rests, at.trial = at.rests[: low + 1], None
+        at.buckled, at.climbs, at.since = True, 0, len(at.tried)
+        does = f", {at.held.factor:.4g} does not" if at.held else ""
+        self._say(
+            f"{at.failure.factor:.4g} is held, but buckles: a small push sideways grows{does}; the"
+            " search begins again below it"
+        )
         return self._choose()
 
     def _choose(self):
         """As :meth:`_begin`, before the load that was held is checked for buckling."""
         at, held = self.at, self.at.held
         if not at.tried and not at.fell:
-            return self._start(Trial(at.last, at.last))  # the structure still stands
+            return self._start(Trial(source=at.last, factor=at.last))  # the structure still stands
         if not at.fell and held and held.factor >= at.last:
             return False
         if at.climbs and at.failure is None:
             most = self.load.factor(1.0)
             goal = min(held.factor * (1 + self.within * 2**at.climbs), most)
             return held.factor < most and self._startFromRest(goal)
-        index = None if at.climbs else self._ofGrowth()
+        index = None if at.climbs or held and at.buckled else self._ofGrowth()
         if index is not None:
             factor, state = at.kept[index]
-            return self._start(Trial(factor, factor), state)
+            return self._start(Trial(source=factor, factor=factor), state)
         if held is None:
             return False
         if at.failure is None:
@@ -348,7 +386,8 @@ class _Search:
         lost = at.failure.factor
         if lost - held.factor > self.within * max(lost, LEAST * at.last):
             return self._startFromRest(0.5 * (held.factor + lost))
-        return not at.failure.fromRest and self._startFromRest(lost)
+        final = at.failure.reason is Reason.BUCKLES or at.failure.source == held.factor
+        return not final and self._startFromRest(lost)
 
     def _start(self, trial, state=None):
         """Begin a trial from a state, or from the present one. Returns True."""
@@ -359,13 +398,15 @@ class _Search:
 
     def _startFromRest(self, factor):
         """Begin a trial from the state at rest under the load that was held. Returns True."""
-        return self._start(Trial(self.at.held.factor, factor, True), self.at.heldState)
+        source, _, state = self.at.rests[-1]
+        return self._start(Trial(source=source, factor=factor, fromRest=True), state)
 
     def _ofGrowth(self):
         """Number of the kept state from which the next trial begins, or None if there is none
         between the ends of the bracket."""
         at = self.at
-        factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.tried) - 1)
+        factors = [factor for factor, _ in at.kept]
+        step = 2 ** max(0, len(at.tried) - at.since - 1)
         # numbers of the last state up to what was held, and of the first from what was not
         low = at.held and bisect.bisect_right(factors, at.held.factor) - 1
         high = at.failure and sum(factor < at.failure.factor for factor in factors)
@@ -388,47 +429,60 @@ class _Search:
         reached = self.at.rows[n][1] if speeds else 0.0
         return max(0, bisect.bisect_right(factors, reached) - 1)
 
-    def _buckles(self):
-        """Whether the structure that is at rest under the load that was held last buckles."""
-        if not self.at.trial:
-            _load(self.at.heldState)
-        return buckles(self.scene)
+    def _buckles(self, factor):
+        """Whether the structure buckles in its present state, at rest under a load."""
+        if buckles(self.scene):
+            return True
+        self.at.steady = max(self.at.steady, factor)
+        return False
+
+    def _sourceBuckles(self):
+        """Whether the state at rest from which the trial began buckles."""
+        at, now = self.at, _present()
+        _load(at.rests[-1][2])
+        found = self._buckles(at.trial.source)
+        _load(now)
+        return found
+
+    def _say(self, what):
+        say(f"{self.running.state.stage}: {what}")
 
     # -- a trial -----------------------------------------------------------------------------------
 
     def _wait(self):
         """Hold the load of the trial, and wait. Returns None if the structure came to rest under
-        it, else why it is not held."""
+        it, else why it is not held; ``BUCKLES`` if the state at rest from which it began does."""
         at, trial, scene, model = self.at, self.at.trial, self.scene, self.model
         slowest = model.supports.slowest()
         growing = max(1, int(max(growthTime(scene), slowest) / O.dt))
         longest = max(TRIAL * scene.args.density_scaling**0.5, WAITED * slowest)
-        most = int(longest / O.dt)
         while True:
-            x = min(1.0, (trial.steps + EVERY) / growing)
+            x = min(1.0, (trial.done + EVERY) / growing)
             factor = trial.source + smooth(x) * (trial.factor - trial.source)
             self.load.put(self.load.at(at.begun, self.load.shareOf(factor)))
             model.loading.loadFactor = factor
             try:
                 self.running.advance(EVERY)
-                trial.steps += EVERY
+                trial.done += EVERY
                 model.motion.checkFall()
             except Collapsed:
                 return Reason.FELL
-            missing, moving = model.supports.unrest()
-            rests = missing < REST and moving < REST_ENERGY_RATIO and x == 1
-            trial.quiet = trial.quiet + 1 if rests else 0
-            if trial.quiet == CONSECUTIVE_CHECKS:
+            # what is soft needs time to move away
+            isGrown = x == 1 and trial.done >= growing + slowest / O.dt
+            if trial.isAtRest(*model.supports.unrest(), isGrown):
                 return None
             if self._accelerates(model.motion.fastest(FALLEN)):
                 return Reason.ACCELERATED
-            if trial.steps >= most:
+            if trial.isGivenUp(longest):
                 return Reason.MOVING
+            isLong = trial.halves > 0 and trial.fromRest
+            if isLong and trial.source > at.steady and self._sourceBuckles():
+                return Reason.BUCKLES
 
     def _accelerates(self, speed):
         """Whether the fastest block is fast, and twice as fast as in the first half of the wait."""
         trial = self.at.trial
-        checks = trial.steps // EVERY
+        checks = trial.done // EVERY
         if checks & (checks - 1) == 0:
             trial.speeds = [*trial.speeds, speed]
         before = trial.speeds[max(0, checks.bit_length() - 2)]
@@ -438,15 +492,27 @@ class _Search:
         """Keep how the trial ended: None if its load was held."""
         at, trial = self.at, self.at.trial
         end = trial.factor, 1e3 * self.model.loading.alongNow()
-        if reason is None:
-            at.held, at.heldState = Tried(*end), _present()
-            at.climbs += bool(at.climbs)
-            if at.failure and trial.factor >= at.failure.factor:
-                at.failure, at.climbs = None, 1
-        elif at.failure is None or trial.factor < at.failure.factor or trial.fromRest:
-            at.failure = Failure(*end, trial.fromRest, reason)
         at.tried, at.trial = [*at.tried, trial.factor], None
-        ends = [f"held {at.held.factor:.4g}"] if at.held else []
-        ends += [f"not held {at.failure.factor:.4g}"] if at.failure else []
-        detail = f"trial {len(at.tried)}: {', '.join(ends)}"
+        detail = f"trial {len(at.tried)}: {trial.factor:.4g} "
+        if reason is None:
+            state = _present()
+            most = max(LEAST_KEPT, int(KEPT_BYTES / len(state)))
+            at.rests = [*at.rests, [*end, state]][-most:]
+            at.climbs += bool(at.climbs)
+            isRefuted = at.failure and trial.factor >= at.failure.factor
+            if isRefuted:
+                at.failure, at.climbs = None, 1
+            detail += "held" + (f", {at.failure.factor:.4g} not" if at.failure else "")
+        else:
+            isRefuted = False
+            if at.failure is None or trial.factor < at.failure.factor or trial.fromRest:
+                source = trial.source if trial.fromRest else -1.0
+                at.failure = Failure(*end, source, reason)
+            detail += f"not held ({reason})"
+            detail += f", {at.held.factor:.4g} held" if at.held else ""
         self.running.show(1, lambda: detail, True)
+        if isRefuted:
+            self._say(
+                f"{trial.factor:.4g} was not held in a larger step of the load, but is held from"
+                " the state at rest just below it; the search goes on above it"
+            )

@@ -20,6 +20,12 @@ from .stage import Duration, stage
 RAMP = 0.02  # [s] in which loads and velocities grow: ten periods of a wave through a wall
 REST_ENERGY_RATIO = 1e-5  # largest kinetic over elastic energy of a structure at rest [-]
 CONSECUTIVE_CHECKS = 3  # that find a structure at rest, before it is said to be
+#: Share of its largest kinetic energy that a structure has lost when it is at rest, unless it has
+#: hardly any, over the elastic energy: what has just begun to move is not at rest [-].
+SLOWED, STILL = 0.75, 1e-9
+#: A wait goes on beyond its time while the kinetic energy of a half of it is below this share of
+#: that in the half before [-].
+DYING = 0.5
 EVERY = 100  # steps between two checks
 #: Steps in which a part of the loads is put on, a third at most, and after which it is seen whether
 #: a block has fallen far: few if time steps are long.
@@ -44,20 +50,53 @@ def growthTime(scene: Any) -> float:
 
 
 @dataclass
-class Resting:
-    """What a stage remembers that waits for rest."""
+class Waiting:
+    """What is remembered of a wait for rest."""
 
     done: int = 0  # steps so far
-    quiet: int = 0  # checks that found it at rest, one after the other
+    quiet: int = 0  # checks that found the structure at rest, one after the other
+    halves: int = 0  # of the time for which it is waited that are over
+    peak: float = 0.0  # largest kinetic over elastic energy in the present half [-]
+    before: float = 0.0  # and in the one before
+
+    def isAtRest(self, missing, moving, isGrown):
+        """Note a check: what :meth:`masonry.model.restraints.Supports.unrest` found, and whether
+        the load is there. Returns whether enough checks, one after the other, found rest."""
+        self.peak = max(self.peak, moving)
+        slowed = moving <= max(STILL, (1 - SLOWED) * max(self.peak, self.before))
+        rests = missing < REST and moving < REST_ENERGY_RATIO and slowed and isGrown
+        self.quiet = self.quiet + 1 if rests else 0
+        return self.quiet == CONSECUTIVE_CHECKS
+
+    def isGivenUp(self, longest):
+        """Whether the time [s] for which it is waited is over, and the motion does not die away."""
+        half = max(1, int(0.5 * longest / O.dt) // EVERY) * EVERY
+        if self.done % half:
+            return False
+        self.halves += 1
+        dies = self.peak < DYING * self.before
+        self.before, self.peak = self.peak, 0.0
+        return self.halves > 1 and not dies
+
+
+@dataclass
+class Resting(Waiting):
+    """What a stage remembers that waits for rest."""
+
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
 
 def buckles(scene: Any) -> bool:
     """Whether a small push sideways grows on a structure that is at rest."""
-    axes = "x" if scene.description.plane else "xy"
-    with scene.running.clock("setup"), scene.running.breakable():
-        return any(period.buckles(scene.model, Vector3(a == "x", a == "y", 0)) for a in axes)
+    running = scene.running
+    with running.clock("steps"), running.breakable():
+        for axis in "x" if scene.description.plane else "xy":
+            grows, steps = period.buckles(scene.model, Vector3(axis == "x", axis == "y", 0))
+            running.state.steps += steps
+            if grows:
+                return True
+    return False
 
 
 def isSlender(scene: Any) -> bool:
@@ -102,7 +141,7 @@ def settle(
     return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
 
 
-def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
+def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False, dying=False):
     """Let something grow, then wait until the structure is at rest. Returns how that ended.
 
     :param longest: time after which it is given up [s]; None: 20 times that in which it grows
@@ -110,6 +149,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     :param over: time in which it grows at least [s]
     :param record: whether the end is a row of curve.csv
     :param buckling: whether a structure at rest must not buckle, else it is ``MOVING``
+    :param dying: whether it is waited longer while the motion dies away
     """
     model, running = scene.model, scene.running
     slowest = model.supports.slowest()
@@ -126,7 +166,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
             f" step, {O.dt:.3g} s"
         )
-    while (at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
+    while (dying or at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
         load = min(1.0, (at.done + every) / growing)
         grow(load)
         running.advance(every)
@@ -136,20 +176,22 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             continue
         missing, moving = model.supports.unrest()
         grown = at.done > (1.2 if over else 1.1) * growing
-        rests = missing < REST and moving < REST_ENERGY_RATIO and grown
-        at.quiet = at.quiet + 1 if rests else 0
+        at.isAtRest(missing, moving, grown)
         if load == 1:
             model.motion.checkFall()
             if model.loading.target and model.loading.hasSunk():
                 raise Collapsed("the platen has come down by half a course")
+        ends = dying and at.isGivenUp(longest) or not dying and at.done >= most
         running.show(
-            at.done / most,
+            min(1, at.done / most),
             lambda: (
                 f"{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
                 " the elastic"
             ),
-            at.quiet == CONSECUTIVE_CHECKS or at.done >= most,
+            at.quiet == CONSECUTIVE_CHECKS or ends,
         )
+        if ends:
+            break
     if at.quiet < CONSECUTIVE_CHECKS:
         missing, moving = model.supports.unrest()
         say(

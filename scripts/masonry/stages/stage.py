@@ -19,7 +19,7 @@ from ..run.accuracy import STAGES
 from ..run.checkpoints import stateOf
 from ..run.run_state import StageContext
 from ..scene.script import PUSHES, argumentsOf, asData
-from .answers import COLLAPSED, DONE, FALL, FALLEN
+from .answers import COLLAPSED, DONE, FALL, FALLEN, keep
 from .falling import followFall, writeTable
 from .falling import answers as answersOfFall
 
@@ -275,7 +275,7 @@ class _Command:
             except Collapsed as collapse:
                 say(f"note: the fall is followed no farther: {collapse}")
             found = answersOfFall(scene, scene.ended, running.memory.begun)
-            self._keepAnswers(FALL, running.entered, found)
+            keep(scene, str(running.entered), FALL, running.entered, found)
             writeTable(scene)
             self._noteEnd(scene.ended)
             running.checkpoints.setRollbackPoint()
@@ -294,12 +294,8 @@ class _Command:
             return
         results, first = running.results, running.state.stages[self.before]["first_row"]
         rows = lambda head: results.column(head)[first:] if head in results.columns else []
-        self._keepAnswers(self.name, self.before + 1, self.traits.answers(scene, rows))
-
-    def _keepAnswers(self, stage, number, answers):
-        state = self.running.state
-        kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
-        state.answers = {**state.answers, str(number): kept}
+        number = self.before + 1
+        keep(scene, str(number), self.name, number, self.traits.answers(scene, rows))
 
 
 @dataclass

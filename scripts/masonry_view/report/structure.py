@@ -138,9 +138,9 @@ def valueOf(answer):
 
 def sought(run):
     """The largest load that was held and the smallest that was not, as answers, of a run that
-    looked for one load: pairs of an answer and what it is."""
-    loads = quantities.loadsOf(run["stages"])
-    ones = [a for a in answersOf(run) if a["name"] in ("factor_held", "factor_not_held")]
+    looked for one load: pairs of an answer and what it is. Of a bracket its trials count."""
+    loads, names = quantities.loadsOf(run["stages"]), ("factor_held", "factor_not_held")
+    ones = [a for a in answersOf(run) if a["name"] in names and a["stage"] != "bracket"]
     if len({(a["stage"], a["unit"], loads.get(a["number"])) for a in ones}) != 1:
         return []
     found = []
@@ -148,7 +148,10 @@ def sought(run):
         ("factor_held", max, "largest load that was held"),
         ("factor_not_held", min, "smallest load that was not held"),
     ):
-        if alike := [a for a in ones if a["name"] == name]:
+        alike = [a for a in ones if a["name"] == name]
+        if found:  # what was held later counts
+            alike = [a for a in alike if a["value"] > found[0][0]["value"]]
+        if alike:
             found.append((choose(alike, key=lambda a: a["value"]), what))
     return found
 

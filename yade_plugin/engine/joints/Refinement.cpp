@@ -378,6 +378,8 @@ bool Refinement::setPoints(SceneContents& store, const std::vector<int>& refined
         const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
         const SingleJointColumns fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
         fresh.shapes->refined[0] = {count, count ? first : nullptr};
+        fresh.shapes->scene = joint->geom->group->scene;
+        fresh.shapes->inScene = true; // so that its points stay to the bit, also if all of a group go back to theirs
         fresh.attachTo(*joint);
     }
     return true;
