@@ -24,8 +24,9 @@ from ..units import GRAVITY
 SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
 SAMPLE = 2e-5  # [s] between readings of the forces, at true masses
 FEWEST = 10  # readings in half a period, for half a per cent
-#: Duration of the first side over its half period, so that the difference has its zero [-].
-BEYOND = 1.1, 2.0
+#: Duration of the first side over its half period, so that the difference has its zero [-]; the
+#: half period of a structure that still swings may be none of its own.
+BEYOND = 1.1, 2.0, math.inf
 #: Search for buckling: acceleration over gravity [-], time between readings, time after which a
 #: push that has not come back counts as growing [s], first number of readings, and momentum of a
 #: structure that buckles over that of a free body [-].
@@ -48,7 +49,7 @@ def firstPeriod(structure, direction, longest):
         return None
     try:
         for beyond in BEYOND:
-            there, back, end = [], [], beyond * most
+            there, back, end = [], [], min(beyond, 2.0) * most
             for momentum in _momenta(structure, direction, SHARE, every):
                 there.append(momentum)
                 if momentum <= 0:

@@ -6,7 +6,7 @@ import math
 from yade import O, Vector3
 
 from ..units import GRAVITY
-from .loading import forceOn, reactionOf
+from .loading import Pattern, forceOn, reactionOf
 from .motion import FALLEN
 
 #: Share of horizontal loads above which they must be carried on their own at rest [-].
@@ -43,6 +43,7 @@ class Supports:
         zones = structure.zones
         self._deformable = set(zones.bodies) if zones else set()
         self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
+        self._ofPattern = None, ()  # a pattern, and its points with their shares
         self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}
         held = {target.body for target in self.held}
         self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
@@ -94,22 +95,30 @@ class Supports:
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and rotation,
-        about y in a plane, else its angle [rad]."""
+        about y in a plane, else its angle [rad]; the mean displacement of a pattern, and 0."""
+        if isinstance(target, Pattern):
+            if target is not self._ofPattern[0]:
+                points = [(share, _Point(body, at)) for body, at, share in target.parts]
+                self._ofPattern = target, points
+            return sum((s * p.moved() for s, p in self._ofPattern[1]), Vector3.Zero), 0.0
         point = self._points[target.name]
         axis, angle = (point.state.ori * point.upright).toAxisAngle()
         return point.moved(), angle * axis[1] if self.description.plane else angle
 
     def masonryMoved(self, target, direction):
-        """Displacement of the bricks at a platen, or of the point of a brick, along a direction
+        """Displacement of the bricks at a platen, or of what :meth:`moved` has, along a direction
         since the scene was built [m]."""
-        face = self._faces.get(target.name)
+        face = self._faceAt(target)
         if not face:
             return self.moved(target)[0].dot(direction)
         return sum(share * point.moved().dot(direction) for share, point in face)
 
+    def _faceAt(self, target):
+        return None if isinstance(target, Pattern) else self._faces.get(target.name)
+
     def driftHeight(self, target):
         """Height of the points of :meth:`masonryMoved` [m]."""
-        face = self._faces.get(target.name)
+        face = self._faceAt(target)
         if not face:
             return target.recorded[2]
         return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)

@@ -5,9 +5,9 @@ terminal, the report, notebooks, studies and capacity read.
 To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`. Its function finds it from a
 :class:`RunData`, which a run has at its end and its folder has later, so both give the same number.
 
-A *push* below is the last one of the run, with those before it along the same line. Forces along it
-are at its two ends: those of all supports (``base_shear_kN``) and that of the drive
-(``top_shear_kN``).
+A *push* below is the last one of the run, with those before it with whose curve it goes on
+(``continued``). Forces along it are at its two ends: those of all supports (``base_shear_kN``) and
+that of the drive (``top_shear_kN``).
 """
 
 import math
@@ -308,8 +308,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "push_work_J",
         "work of the push",
-        "Area under the curve of the push; none of a push in a pattern, whose force works on"
-        " the mean of its points.",
+        "Area under the curve of the push; none if its displacement is that of a control, on which"
+        " the force does no work.",
         f"{_AT_BASE}, {MOVED}",
         lambda d: d.work(lambda moved, base: loops.area(base, moved)),
         group="one way",
@@ -431,7 +431,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Of what the joints and the damping of the run took in all, the share of the damping,"
         " which a real wall does not have.",
         "masonry.numbers.curves.dampedShare",
-        lambda d: curves.dampedShare(d.__getitem__),
+        lambda d: curves.dampedShare(d.grown),
         group="loops",
         share=True,
     ),

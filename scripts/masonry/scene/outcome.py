@@ -11,6 +11,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..arguments import isNumber
 from ..model import bodies
+from ..model.loading import Pattern
 from ..numbers import columns
 from ..materials.assumptions import effective
 from ..terminal import say
@@ -202,8 +203,8 @@ class ResultSummary:
         """Entries from which the numbers of a push are found."""
         model = self.model
         period, weight, grown = self._freeVibration()
-        target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
-        heights = target.recorded[2], model.supports.driftHeight(target)
+        control, sways = model.loading.control, abs(model.loading.push.direction[2]) < 1e-9
+        heights = control.recorded[2], model.supports.driftHeight(control)
         recorded, drift = (z - self.description.low[2] for z in heights)
         past = self.pushed.history
         return {
@@ -339,8 +340,8 @@ def _entry(x, label, y, what, marks=(), looped=False, **more):
 
 
 def _ofPush(outcome):
-    target, data = outcome.model.loading.target, outcome.data
-    height = f"{target.recorded[2] - outcome.description.low[2]:.3g} m above the base"
+    control, data = outcome.model.loading.control, outcome.data
+    height = f"{control.recorded[2] - outcome.description.low[2]:.3g} m above the base"
     looped, marks = bool(outcome.pushed.history), []
     if data.rows:
         moved, sides = data["displacement_mm"], (1, -1) if looped else (1,)
@@ -348,7 +349,7 @@ def _ofPush(outcome):
         marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} mm"} for x, y in ends]
     return _entry(
         "displacement_mm",
-        f"displacement of {target.name}, {height} [mm]",
+        f"{'mean ' * isinstance(control, Pattern)}displacement of {control.name}, {height} [mm]",
         {"base_shear_kN": "supports", "top_shear_kN": "loaded point"},
         "force along the push [kN]",
         marks,
@@ -360,8 +361,14 @@ def _ofPush(outcome):
 
 def _rowsOf(outcome, rows):
     """The entry of the figure with the rows that it shows, if these are not all in order."""
-    every = list(range(len(outcome.results.rows)))
-    return {} if list(rows) == every else {"rows": list(rows)}
+    if [*rows] == [*range(len(outcome.results.rows))]:
+        return {}
+    spans: list[list[int]] = []
+    for row in rows:
+        if not spans or spans[-1][1] != row:
+            spans.append([row, row])
+        spans[-1][1] += 1
+    return {"rows": spans}
 
 
 def _ofLoad(outcome, number, load):

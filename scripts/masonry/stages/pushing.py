@@ -55,6 +55,9 @@ class Pushing:
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
     reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
+    farthest: float = 0.0  # displacement of the present way [mm]
+    drivenTo: float = 0.0  # what the drive had gone then [mm]
+    turnedBack: bool = False  # whether the wall has not been farther for long
 
     def travelled(self, direction):
         """Length of the path so far [mm]."""
@@ -75,6 +78,16 @@ class Pushing:
             outwards = self.moved if side else -self.moved
             self.peaksAt = _exchanged(self.peaksAt, side, outwards)
         return mean
+
+    def turnsBack(self, goal):
+        """Whether the drive has gone as far as the whole present way, and :data:`AVERAGED` at
+        least, since the wall was farthest on it, for the first time."""
+        if goal.direction * (self.moved - self.farthest) > 0:
+            self.farthest, self.drivenTo = self.moved, self.driven
+        way = max(AVERAGED, abs(goal.displacement - self.last))
+        back = self.driven - self.drivenTo > way and not self.turnedBack
+        self.turnedBack = self.turnedBack or back
+        return back
 
     def retreats(self, direction, whole):
         """Whether the wall is a tenth of the whole path [mm], and 1 mm at least, behind where it
@@ -109,6 +122,7 @@ class Pushing:
                 side, out = goal.direction > 0, goal.direction * goal.displacement
                 self.reach = _exchanged(self.reach, side, max(self.reach[side], out))
                 self.growth, turned, self.turned = -self.growth, True, True
+                self.farthest, self.drivenTo = self.moved, self.driven
 
 
 def _exchanged(pair, side, value):
@@ -167,7 +181,7 @@ def drivePush(scene, name, args, began, continued=False):
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
-        if at.places and not undamped:
+        if at.places and (not undamped or growth <= start):
             moved = model.loading.alongNow() - 1e-3 * at.start
             weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
             _keepVibration(run, at.period, weight or 0.0, at.now)
@@ -178,6 +192,12 @@ def drivePush(scene, name, args, began, continued=False):
         if args.history:
             at.since, at.growth = at.now, growth
         run.show(max(0, travelled / whole), detail)
+        if at.turnsBack(goal):
+            say(
+                f"note: {name}: {model.loading.control.name}, whose displacement counts, turned"
+                f" back at {at.farthest:.3g} mm, and the drive goes on, up to"
+                f" {UNFOLLOWED * whole:g} mm; another control= may say more"
+            )
         moves, turned = at.passOn(goals)
         moves = moves and not how
         early = args.history and (turned or before * at.moved < 0)
@@ -196,9 +216,9 @@ def _entered(scene, name, args, at, began, continued):
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
-        here = list(model.loading.topDisplacement())
+        here = [*model.loading.topDisplacement(), model.loading.level()]
         origin = run.state.origins[began] if continued else here
-        at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+        at.moved = at.last = at.start = at.farthest = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
             f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at"
@@ -230,12 +250,12 @@ def _lost(model, at, reading, direction, mean, whole):
     loading = model.loading
     if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
-    if loading.hasSunk(reading.sunk + min(0.0, reading.along * loading.direction[2])):
+    if loading.hasSunk(loading.origin[3], reading.along * loading.direction[2]):
         return "the pushed point has come down by half a course"
     if at.driven > UNFOLLOWED * whole:
         return (
             f"another part gives way: the drive has gone {at.driven:.0f} mm, and"
-            f" {loading.target.name} has not followed"
+            f" {loading.control.name}, which was at {at.farthest:.3g} mm, has not followed"
         )
     return "it moves against its push" if at.retreats(direction, whole) else None
 

@@ -51,6 +51,7 @@ class Resting:
     quiet: int = 0  # checks that found it at rest, one after the other
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
+    level: float | None = None  # of what was pushed, when the loads had grown [m]
 
 
 def buckles(scene: Any) -> bool:
@@ -140,7 +141,9 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         at.quiet = at.quiet + 1 if rests else 0
         if load == 1:
             model.motion.checkFall()
-            if model.loading.target and model.loading.hasSunk():
+            if at.level is None:
+                at.level = model.loading.level()
+            if model.loading.hasSunk(at.level):
                 raise Collapsed("the platen has come down by half a course")
         running.show(
             at.done / most,
