@@ -41,9 +41,7 @@ def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict
     count = len(data[spec["x"]["column"]])
     spans = spec.get("rows", [[0, count]])
     if wrong := [row for span in spans for row in span if not 0 <= row <= count]:
-        raise Refused(
-            f"{directory}: figure: rows up to {max(wrong)}, and curve.csv has {count}"
-        )
+        raise Refused(f"{directory}: figure: rows up to {max(wrong)}, and curve.csv has {count}")
     return {**spec, "rows": [n for first, end in spans for n in range(first, end)]}
 
 

@@ -229,7 +229,7 @@ def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():
     recorded = [
         *high.columns(plane=False),
         *targets.Drift("drift", low, high).columns(plane=True),
-        *targets.JointRecord("joint0", (0, 1)).columns(),
+        *targets.JointRecord("joint0", (0, 1)).columns(plane=True),
     ]
     assert (
         " ".join(columns.heads(recorded))

@@ -152,6 +152,7 @@ STATES = (
 
 
 _AT_POINT, _AT_BASE, _AT_ENDS = (f"curve.csv: {c}" for c in (MOVED, BASE, f"{BASE}, {TOP}"))
+_OF_SHEAR = "curve.csv: shear_stress_MPa, in space with shear_stress_across_MPa"
 _OF_DRIFT = f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m"
 
 
@@ -205,6 +206,20 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
         lambda d: False,
     ),
 }
+
+
+def shearOf(column: Callable[[str], Any]) -> list[float]:
+    """The amount of the mean shear stress of a joint in all rows [MPa].
+
+    :param column: gives the values of a column of the joint by its name; of one that is missing
+        nothing or an error
+    """
+    along = column("shear_stress_MPa")
+    try:
+        across = column("shear_stress_across_MPa")
+    except (LookupError, ValueError):
+        across = None
+    return [*map(math.hypot, along, across or [0.0] * len(along))]
 
 
 def _ofPattern(key):
@@ -541,9 +556,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "peak_shear_stress_MPa",
         "largest shear stress",
-        "Largest mean shear stress of the joint.",
-        "curve.csv: shear_stress_MPa",
-        lambda c: max(c("shear_stress_MPa")),
+        "Largest mean shear stress of the joint, in whichever direction.",
+        _OF_SHEAR,
+        lambda c: max(shearOf(c)),
         group="joint",
         brief=True,
     ),
@@ -558,9 +573,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "end_shear_stress_MPa",
         "shear stress at the end",
-        "Mean shear stress of the joint in the last row.",
-        "curve.csv: shear_stress_MPa",
-        lambda c: c("shear_stress_MPa")[-1],
+        "Mean shear stress of the joint in the last row, in whichever direction.",
+        _OF_SHEAR,
+        lambda c: shearOf(c)[-1],
         group="joint",
         brief=True,
     ),

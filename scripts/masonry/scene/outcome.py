@@ -412,13 +412,16 @@ def restsUnder(outcome, name):
 
 def _ofJoint(outcome, joint):
     column = lambda head: outcome.results.column(joint.prefixed(head))
-    reach = lambda head: max(map(abs, column(head)), default=0)
-    what = "slide" if reach("slide_mm") > reach("opening_mm") else "opening"
+    reach = lambda what: max(map(abs, column(f"{what}_mm")), default=0)
+    isHere = lambda what: joint.prefixed(f"{what}_mm") in outcome.results.columns
+    what = max(filter(isHere, ("opening", "slide", "slide_across")), key=reach)
     stresses = {
         joint.prefixed("normal_stress_MPa"): "normal, positive in tension",
-        joint.prefixed("shear_stress_MPa"): "shear",
+        joint.prefixed(
+            f"shear_stress{what.removeprefix('slide') * (what != 'opening')}_MPa"
+        ): "shear",
     }
-    if what == "slide":
+    if what != "opening":
         stresses = dict(reversed(stresses.items()))
-    x, label = joint.prefixed(f"{what}_mm"), f"mean {what} of the joint [mm]"
+    x, label = joint.prefixed(f"{what}_mm"), f"mean {what.replace('_', ' ')} of the joint [mm]"
     return _entry(x, label, stresses, "mean stress [MPa]")

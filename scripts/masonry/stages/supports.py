@@ -10,6 +10,7 @@ from yade import O, Vector3
 from ..arguments import Freedoms, number, orFunction
 from ..model.motion import SWUNG
 from ..errors import Refused, checkPlane
+from ..numbers.quantities import shearOf
 from ..scene.history import MAX_DISPLACEMENT
 from ..scene.loads import Force
 from ..scene.pressures import atPlace
@@ -135,22 +136,18 @@ def _path(scene, target, along):
     return path
 
 
-#: Stresses of a recorded joint that are answers: name, column, and sign.
-STRESSES = (
-    ("peak_normal_stress", "normal_stress_MPa", 1),
-    ("peak_compressive_stress", "normal_stress_MPa", -1),
-    ("peak_shear_stress", "shear_stress_MPa", 1),
-)
-
-
 def stresses(scene, rows):
     """The largest mean stresses of recorded joints, in tension, compression and shear."""
     how = "the largest mean over the joint in this stage"
     for joint in scene.description.joints:
-        for name, column, sign in STRESSES:
-            if values := rows(joint.prefixed(column)):
-                value = max(sign * v for v in values)
-                yield Answer(joint.prefixed(name), "MPa", value, how)
+        own = lambda head: rows(joint.prefixed(head))
+        for name, values in (
+            ("peak_normal_stress", own("normal_stress_MPa")),
+            ("peak_compressive_stress", [-v for v in own("normal_stress_MPa")]),
+            ("peak_shear_stress", shearOf(own)),
+        ):
+            if values:
+                yield Answer(joint.prefixed(name), "MPa", max(values), how)
 
 
 @stage(options=("rate",), answers=stresses)
