@@ -11,6 +11,7 @@ from .motion import FALLEN
 
 #: Share of horizontal loads above which they must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
+SMALL_REACTION = 0.1  # along an axis over the largest one [-]
 LOST = 0.5  # swing under loads over the height [-]: one that would swing by more is not waited for
 FILLED = 1e-9  # free share of a platen's side that counts as full [-]
 
@@ -168,6 +169,16 @@ class Supports:
         # without loads motion is compared with the work of the weight over a picometre
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
+
+    def imbalance(self):
+        """The force that inertia takes over the largest reaction of a support, of the axis along
+        which that is most [-]; axes along which no reaction is above :data:`SMALL_REACTION` of the
+        largest do not count."""
+        of = lambda t: self.supportedBy(t) + self.structure.connectors.onSpringsOf(t)
+        reactions, inertia = [of(target) for target in self.held], self.applied() + self.carried()
+        largest = [max((abs(one[i]) for one in reactions), default=0.0) for i in range(3)]
+        counted = (i for i in range(3) if largest[i] > SMALL_REACTION * max(largest))
+        return max((abs(inertia[i]) / largest[i] for i in counted), default=0.0)
 
     def _sinkingPeriod(self):
         """The vertical period of a structure so soft that its swing under its loads could be taken
