@@ -8,6 +8,7 @@ work on this displacement, so the push follows the structure beyond its peak. Di
 push are those of its control, which changes no force.
 """
 
+import math
 import zlib
 from dataclasses import replace
 from types import SimpleNamespace
@@ -35,7 +36,7 @@ from ..numbers import curves
 from ..numbers.run_data import BASE, MOVED, TOP, RunData
 from ..model.load_names import nameOfPush
 from .bounds import findBound
-from ..scene.history import CYCLES, MAX_DISPLACEMENT, parse
+from ..scene.history import CYCLES, MAX_DISPLACEMENT, MIN_AMPLITUDE, parse
 from ..run.option_table import Rate
 from ..scene.targets import AnyTarget, Target, kindOfLoaded
 from ..scene.script import PUSHES
@@ -245,7 +246,17 @@ def cycle(
     turns = isinstance(counted, Pattern) or not counted.box or "Y" not in counted.freedom
     height = counted.recorded[2] if turns else counted.box[0][2]
     height -= scene.description.low[2]
-    share = scene.share * (10 * height if unit == "%" else 1)
+    millimetres = 10 * height if unit == "%" else 1  # per unit
+    ends = [v / scene.share for v in (MIN_AMPLITUDE, MAX_DISPLACEMENT)]
+    for amplitude in amplitudes:
+        if not ends[0] <= millimetres * amplitude <= ends[1]:
+            low, high = (v / millimetres if millimetres > 0 else math.inf for v in ends)
+            over = f", over a height of {height:.4g} m" * (unit == "%")
+            raise Refused(
+                f"cycle: amplitude {amplitude:g} {unit} must be from {low:.4g} to {high:.4g}"
+                f" {unit}{over}"
+            )
+    share = scene.share * millimetres
     text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
     return _drive(scene, "cycle", aimed, direction, rate, continued, history=text)
 
