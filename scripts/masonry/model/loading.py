@@ -46,6 +46,8 @@ class Loading:
         self.target = next((target for target in targets if target.drives), None)
         self.followed = self.control = self.target
         self.push = self.target and self.driveOf(self.target, self.target.drives[0])
+        #: labels of drives that hold from the beginning on
+        self.beginning = {name for name, load in self.loads.items() if load.driven}
         self.direction, self.origin = Vector3.UnitX, (0.0, 0.0, 0.0)
         self.pushing = self.grown = False
         self.loadFactor = 0.0
@@ -299,7 +301,8 @@ class Pattern:
 
 def pushTo(loading, pushed, control, direction, name="push"):
     """Let a push move a target or a :class:`Pattern` in a direction from now on, and record the
-    displacement of a control, a target or that pattern. Other drives hold."""
+    displacement of a control, a target or that pattern. Other drives hold. Returns whether this one
+    has held since an earlier push."""
     checkPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
@@ -311,12 +314,15 @@ def pushTo(loading, pushed, control, direction, name="push"):
     drive = _drivePattern if isinstance(pushed, Pattern) else _driveOf
     load = drive(loading, pushed, direction, name)
     loading.stopDrives()
+    before = loading.pushing and load is loading.push  # a drive may hold from the beginning on
+    held = load.driven and (before or load.label not in loading.beginning)
     if load.driven:  # it holds, and is asked for its force before the next step
         load.reaction *= load.direction.normalized().dot(direction)
     load.direction, load.driven = direction, True
     loading.target, loading.direction, loading.push = pushed, direction, load
     loading.followed = loading.control = control
     loading.origin, loading.pushing = (0, 0, 0), True
+    return held
 
 
 def _driveOf(loading, target, direction, name):

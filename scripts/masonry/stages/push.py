@@ -294,7 +294,7 @@ def _drive(scene, name, aimed, direction, rate, continued, **aim):
     args.rate = args.rate if rate is None else rate
     direction, running = Vector3(*direction).normalized(), scene.running
     (pushed, control), loading = aimed, scene.model.loading
-    pushTo(loading, pushed, control, direction, name)
+    held = pushTo(loading, pushed, control, direction, name)
     scene.pushed = args
     counted = "" if pushed is control else control.name
     began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
@@ -307,7 +307,7 @@ def _drive(scene, name, aimed, direction, rate, continued, **aim):
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
     running.note("push", *names, counted, way=[continued, bool(args.history)])
     if not scene.limitAnalysisOnly:
-        drivePush(scene, name, args, began, continued)
+        drivePush(scene, name, args, began, continued, held)
         loading.stopDrives()
     return DONE
 

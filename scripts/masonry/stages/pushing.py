@@ -14,7 +14,8 @@ from ..numbers import curves
 from ..numbers.quantities import IMBALANCE
 from ..run.option_table import USUAL
 from ..scene.history import aim, pathLength, turns
-from .rest import rampTime
+from ..model.motion import REST
+from .rest import REST_ENERGY_RATIO, rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
@@ -47,6 +48,8 @@ class Pushing:
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
     places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
+    #: Whether the drive of a push before held the structure, which still moved, when this one began.
+    moving: bool = False
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     #: Time [s] and base shear [kN] of the last rows, over which AVERAGED takes the mean.
@@ -130,14 +133,14 @@ def _exchanged(pair, side, value):
     return [pair[0], value] if side else [value, pair[1]]
 
 
-def drivePush(scene, name, args, began, continued=False):
+def drivePush(scene, name, args, began, continued=False, held=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The velocity grows evenly from rest to ``--rate`` within one first period of the structure,
     which is measured then, so that no swing of that period is left. If not all blocks are driven,
     nothing is damped while it grows: numerical damping would act as more mass. Where the history
-    turns, the velocity changes within whole periods, :func:`rampTime` at least, because open joints
-    make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
+    turns, and where a push follows another one without rest, the velocity changes within whole
+    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
     the displacement of curve.csv, so the wall turns within 0.01 mm of the turning points. Other
     points are passed at full speed, and so is the end, unless it is that of a file.
 
@@ -148,11 +151,12 @@ def drivePush(scene, name, args, began, continued=False):
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
     :param began: name under which the run keeps where the push began
     :param continued: whether displacements count from there
+    :param held: whether the drive of a push before held the structure
     """
     run, model = scene.running, scene.model
     drive = model.loading.push
     at = run.stage(name, Pushing())
-    goals = _entered(scene, name, args, at, began, continued)
+    goals = _entered(scene, name, args, at, began, continued, held)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
 
@@ -166,7 +170,8 @@ def drivePush(scene, name, args, began, continued=False):
         goal = goals[at.passed]
         model.loading.goal = at.passed + 1, goal.displacement
         growth, start, steps = _pace(at, goal, args, every)
-        free = bool(at.period) and not at.turned and growth < 1 and not drive.damped
+        slow = at.turned or at.moving
+        free = bool(at.period) and not slow and growth < 1 and not drive.damped
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
@@ -181,7 +186,7 @@ def drivePush(scene, name, args, began, continued=False):
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
-        if at.places and (not undamped or growth <= start):
+        if at.places and (growth == 1.0 or growth <= start):
             moved = model.loading.alongNow() - 1e-3 * at.start
             weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
             _keepVibration(run, at.period, weight or 0.0, at.now)
@@ -210,7 +215,7 @@ def drivePush(scene, name, args, began, continued=False):
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
-def _entered(scene, name, args, at, began, continued):
+def _entered(scene, name, args, at, began, continued, held):
     """Begin a push, with its first row, frame and period, or go on with it. Returns the points of
     its path. Parameters as in :func:`drivePush`."""
     run, model = scene.running, scene.model
@@ -232,6 +237,8 @@ def _entered(scene, name, args, at, began, continued):
     if first:
         run.state.origins = {**run.state.origins, began: origin}
         at.now = at.since = O.time
+        missing, moving = model.supports.unrest()
+        at.moving = held and (missing > REST or moving > REST_ENERGY_RATIO)
         at.moved = 1e3 * run.record().along
         run.frame()
         # a push that is shorter than its first period is no slow one
@@ -290,7 +297,7 @@ def _rampOf(at, args, every, turns):
     then.
 
     :param every: steps of a row at full speed
-    :param turns: whether the drive turns, and does not begin
+    :param turns: whether the drive turns, or begins on what still moves
     """
     least = rampTime(args)
     if not at.period:
@@ -308,7 +315,7 @@ def _pace(at, goal, args, every):
     The velocity grows evenly, but can be braked before the next turn: at most √(2·a·s) at the
     distance s with the deceleration a.
     """
-    growing, closer = _rampOf(at, args, every, at.turned)
+    growing, closer = _rampOf(at, args, every, at.turned or at.moving)
     braking, _ = _rampOf(at, args, every, True)
     start = _sum(at.growth, (at.now - at.since) / growing)
     row = every if start == 1.0 else closer
