@@ -16,8 +16,8 @@ LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cya
 
 
 def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict[str, Any]:
-    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused if it cannot
-    be drawn.
+    """The entry ``figure`` of run.json, with all that may be left out, and the numbers of all its
+    rows. Raises Refused if it cannot be drawn.
 
     :param run: what :func:`masonry.numbers.files.readRun` returns
     :param data: what :func:`masonry.numbers.files.readCurve` returns
@@ -38,7 +38,11 @@ def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict
             )
     if not spec["y"]:
         raise Refused(f'{directory}: figure: "y" must name one column at least')
-    return spec
+    count = len(data[spec["x"]["column"]])
+    spans = spec.get("rows", [[0, count]])
+    if wrong := [row for span in spans for row in span if not 0 <= row <= count]:
+        raise Refused(f"{directory}: figure: rows up to {max(wrong)}, and curve.csv has {count}")
+    return {**spec, "rows": [n for first, end in spans for n in range(first, end)]}
 
 
 def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
@@ -84,8 +88,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
     """
     data = {name: np.array(values) for name, values in data.items()}
     spec = plan(run, data, directory)
-    if "rows" in spec:
-        data = {name: values[spec["rows"]] for name, values in data.items()}
+    data = {name: values[spec["rows"]] for name, values in data.items()}
     looped, x = spec["looped"], data[spec["x"]["column"]]
     used = {axis["column"] for axis in spec["y"]}
     stack, work = energies({k: v for k, v in data.items() if k not in used})

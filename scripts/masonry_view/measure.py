@@ -53,11 +53,14 @@ def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, 
     - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under
       compression over the closure
     - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the
-      end
+      end, both along the slide at the end
     """
     curve, prefix = readCurve(directory), name + "_" if name else ""
-    heads = "opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa"
-    opening, slide, normal, shear = (np.array(curve[prefix + head]) for head in heads)
+    opening, normal = (np.array(curve[prefix + n]) for n in ("opening_mm", "normal_stress_MPa"))
+    both = lambda *names: np.array([curve[prefix + n] for n in names if prefix + n in curve])
+    slides = both("slide_mm", "slide_across_mm")
+    way = slides[:, -1] / (np.linalg.norm(slides[:, -1]) or 1.0)
+    slide, shear = way @ slides, way @ both("shear_stress_MPa", "shear_stress_across_MPa")
     area = lambda stress, mm: 1e3 * loops.area(np.maximum(stress, 0), mm)
     return {
         f"{prefix}opening_work_J_per_m2": area(normal, opening),

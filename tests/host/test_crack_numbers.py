@@ -99,10 +99,12 @@ def test_the_first_crack_is_counted_from_the_first_row_of_the_push():
 def numbers(loads, columns, **run):
     """Numbers of a run of which each stage has two rows.
 
-    :param loads: of the stages in their order: the kind and the name of what each loaded
+    :param loads: of the stages in their order: the kind and the name of what each loaded; a push
+        goes on with the curve of the one before
     """
     zero = [0.0] * 2 * len(loads)
-    stages = [{"load": [*load, ""], "first_row": 2 * n} for n, load in enumerate(loads)]
+    of = lambda n, load: {"load": [*load, ""], "first_row": 2 * n, "continued": n > 0}
+    stages = [of(n, load) for n, load in enumerate(loads)]
     column = lambda head: columns.get(head, zero)
     run = {"stages": stages, "drift_height_m": 2.0, **run}
     return quantities.found(RunData(run, column))

@@ -75,3 +75,26 @@ def test_shear_after_closure_stays_inside_the_cap(couplet):
     sigma, tau = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
     assert np.all(np.sqrt(sigma**2 + 9 * tau**2) <= 7.55 * 1.001)
     assert tau.max() > 1.5
+
+
+@mark.parametrize("axis", ["x", "y"])
+@mark.parametrize("way", [1, -1])
+def test_the_largest_shear_stress_is_that_of_the_vector_to_whichever_side(tmp_path, axis, way):
+    scene = lean(
+        tmp_path, bricks.stack(2, UNIT), materials.calciumSilicate(), rate=2, gravity=0, plane=False
+    )
+    scene.platen("bottom", height=UNIT[2])
+    at = (UNIT[0] / 2, UNIT[1] / 2, 2 * UNIT[2])
+    top = scene.platen("top", upTo=3 * UNIT[2], point=at, drive=f"z{axis}")
+    bed = scene.joint(0, 1, name="j")
+    scene.pressJoint(top, bed, -0.5e6)
+    scene.drive(top, **{axis: 0.1 * way})
+    scene.finish()
+    run = readRun(tmp_path)
+    peak = 0.11 + 0.43 * 0.5
+    assert run["j_peak_shear_stress_MPa"] == approx(peak, rel=0.005)
+    (answer,) = (a["value"] for a in run["answers"][-3:] if a["name"] == "j_peak_shear_stress")
+    assert answer == run["j_peak_shear_stress_MPa"]
+    assert run["figure"]["x"]["column"] == f"j_slide{'_across' * (axis == 'y')}_mm"
+    slide = readCurve(tmp_path)[run["figure"]["x"]["column"]][-1]
+    assert 0.02 < way * slide < 0.1

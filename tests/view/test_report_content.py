@@ -501,7 +501,7 @@ def test_several_pushes_are_named(tmp_path):
         folder(tmp_path, stages=[*RUN["stages"], {**push, "load": ["push", "top along y", ""]}])
     )
     assert "The run has 2 pushes, the stages 2, 3." in found.said()
-    found = page(folder(tmp_path, figure={**RUN["figure"], "rows": list(range(100))}))
+    found = page(folder(tmp_path, figure={**RUN["figure"], "rows": [[0, 100]]}))
     assert "from 0 kN to 99 kN" in found.said()
 
 

@@ -41,7 +41,9 @@ public:
                      "counts them down")
                   .atLeast(0));
         visit("acceleration", &L::acceleration, number("m/s²", "Growth of the velocity in the ramp"));
-        visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
+        visit("reaction", &L::reaction,
+              number("N", "Force that the drive applied along the direction in the last step; whoever turns the direction "
+                          "turns it, too"));
         visit("work", &L::work,
               number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "
                           "energies of rigid bodies"),

@@ -31,10 +31,12 @@ class Loading:
 
     - ``loads``: MasonryLoad engines by label; ``push``: the one that drives the
       pushed target, or None
-    - ``target``: what is pushed; at first the target that a drive holds
-    - ``followed``: the target whose displacement is recorded, or None; ``direction`` of the present
+    - ``target``: what is pushed, a target or a :class:`Pattern`; at first the target that a drive
+      holds
+    - ``control``: the target whose displacement the push counts, or the pattern, then of its mean
+    - ``followed``: that whose displacement is recorded now, or None; ``direction`` of the present
       push or load, and ``origin``: the displacement when it began, along it and up, and that of the
-      bricks at the followed platen along it [m]
+      bricks at the followed platen along it; of a push that of its target upwards, too [m]
     - ``pushing``: whether the present load is a push
     - ``grown``: whether presses, dead loads and wind have grown
     - ``loadFactor`` of the load that a stage puts on or lets grow [-]
@@ -48,8 +50,10 @@ class Loading:
         self.loads = {load.label: load for load in self._made()}
         targets = self.description.targets.values()
         self.target = next((target for target in targets if target.drives), None)
-        self.followed = self.target
+        self.followed = self.control = self.target
         self.push = self.target and self.driveOf(self.target, self.target.drives[0])
+        #: labels of drives that hold from the beginning on
+        self.beginning = {name for name, load in self.loads.items() if load.driven}
         self.direction, self.origin = Vector3.UnitX, (0.0, 0.0, 0.0)
         self.pushing = self.grown = False
         self.loadFactor = 0.0
@@ -239,13 +243,18 @@ class Loading:
         """Displacement of the followed point along the load since it began [m]."""
         return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
 
-    def hasSunk(self, down=None):
-        """Whether the pushed platen has come down by half the height of a brick.
+    def level(self):
+        """Upward displacement of what is pushed since the scene was built [m], or 0."""
+        return self.supports.moved(self.target)[0][2] if self.target else 0.0
 
-        :param down: how far, if that is known [m]
+    def hasSunk(self, level, path=0.0):
+        """Whether what is pushed has come down by half the height of a brick.
+
+        :param level: :meth:`level` when that began to count [m]
+        :param path: how far it was pushed upwards since [m]
         """
-        down = -self.supports.moved(self.target)[0][2] if down is None else down
         block = self.description.bricks[-1].corners
+        down = level + min(0.0, path) - self.level()
         return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
 
     def keepLoadLine(self):
@@ -277,6 +286,7 @@ class Loading:
         """What stages have set, for JSON."""
         return {
             "target": self.target.name if self.target else "",
+            "control": self.control.name if self.control else "",
             "followed": self.followed.name if self.followed else "",
             "push": self.push.label if self.push else "",
             "direction": list(self.direction),
@@ -290,8 +300,11 @@ class Loading:
     def putState(self, state):
         """Take a state of :meth:`state`. Raises KeyError for unknown targets and loads."""
         targets = {"": None, **self.description.targets}
-        self.target, self.followed = targets[state["target"]], targets[state["followed"]]
         self.push = {"": None, **self.loads}[state["push"]]
+        if state["push"] == PATTERN:
+            targets[state["target"]] = patternOfDrive(self, state["target"])
+        names = "target", "control", "followed"
+        self.target, self.control, self.followed = (targets[state[name]] for name in names)
         self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])
         self.pushing, self.grown = state["pushing"], state["grown"]
         self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
@@ -319,10 +332,16 @@ class Pattern:
     parts: tuple[tuple[int, Any, float], ...]
     damped: bool = False
 
+    @property
+    def recorded(self) -> Any:
+        """The mean of the points, weighted by the shares [m]."""
+        return sum((share * Vector3(*point) for _, point, share in self.parts), Vector3.Zero)
+
 
 def pushTo(loading, pushed, control, direction, name="push"):
     """Let a push move a target or a :class:`Pattern` in a direction from now on, and record the
-    displacement of a control. Other drives hold."""
+    displacement of a control, a target or that pattern. Other drives hold. Returns whether this one
+    has held since an earlier push."""
     checkPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
@@ -334,9 +353,15 @@ def pushTo(loading, pushed, control, direction, name="push"):
     drive = _drivePattern if isinstance(pushed, Pattern) else _driveOf
     load = drive(loading, pushed, direction, name)
     loading.stopDrives()
+    before = loading.pushing and load is loading.push  # a drive may hold from the beginning on
+    held = load.driven and (before or load.label not in loading.beginning)
+    if load.driven:  # it holds, and is asked for its force before the next step
+        load.reaction *= load.direction.normalized().dot(direction)
     load.direction, load.driven = direction, True
-    loading.target, loading.direction, loading.push = control, direction, load
-    loading.followed, loading.origin, loading.pushing = control, (0, 0, 0), True
+    loading.target, loading.direction, loading.push = pushed, direction, load
+    loading.followed = loading.control = control
+    loading.origin, loading.pushing = (0, 0, 0), True
+    return held
 
 
 def _driveOf(loading, target, direction, name):

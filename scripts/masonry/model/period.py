@@ -26,8 +26,9 @@ from ..units import GRAVITY
 SHARES, ALIKE = (0.05, 5e-3, 5e-4, 5e-5, 5e-6), 0.01
 SAMPLE = 2e-5  # [s] between readings of the forces, at true masses
 FEWEST = 10  # readings in half a period, for half a per cent
-#: Duration of the first side over its half period, so that the difference has its zero [-].
-BEYOND = 1.1, 2.0
+#: Duration of the first side over its half period, so that the difference has its zero [-]; the
+#: half period of a structure that still swings may be none of its own.
+BEYOND = 1.1, 2.0, math.inf
 #: Search for buckling: acceleration over gravity [-], time between readings, time after which a
 #: push that has not come back counts as growing [s], first number of readings, momentum of a
 #: structure that buckles over that of a free body [-], and readings in a period on springs.
@@ -63,7 +64,7 @@ def firstPeriod(structure, direction, longest, share=SHARES[0]):
         return None
     try:
         for beyond in BEYOND:
-            there, back, end = [], [], beyond * most
+            there, back, end = [], [], min(beyond, 2.0) * most
             for momentum in _momenta(structure, direction, share, every):
                 there.append(momentum)
                 if momentum <= 0:

@@ -6,11 +6,12 @@ import math
 from yade import O, Vector3
 
 from ..units import GRAVITY
-from .loading import forceOn, reactionOf
+from .loading import Pattern, forceOn, reactionOf
 from .motion import FALLEN
 
 #: Share of horizontal loads above which they must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
+SMALL_REACTION = 0.1  # along an axis over the largest one [-]
 LOST = 0.5  # swing under loads over the height [-]: one that would swing by more is not waited for
 FILLED = 1e-9  # free share of a platen's side that counts as full [-]
 
@@ -43,6 +44,7 @@ class Supports:
         zones = structure.zones
         self._deformable = set(zones.bodies) if zones else set()
         self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
+        self._ofPattern = None, ()  # a pattern, and its points with their shares
         self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}
         held = {target.body for target in self.held}
         self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
@@ -94,22 +96,30 @@ class Supports:
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and rotation,
-        about y in a plane, else its angle [rad]."""
+        about y in a plane, else its angle [rad]; the mean displacement of a pattern, and 0."""
+        if isinstance(target, Pattern):
+            if target is not self._ofPattern[0]:
+                points = [(share, _Point(body, at)) for body, at, share in target.parts]
+                self._ofPattern = target, points
+            return sum((s * p.moved() for s, p in self._ofPattern[1]), Vector3.Zero), 0.0
         point = self._points[target.name]
         axis, angle = (point.state.ori * point.upright).toAxisAngle()
         return point.moved(), angle * axis[1] if self.description.plane else angle
 
     def masonryMoved(self, target, direction):
-        """Displacement of the bricks at a platen, or of the point of a brick, along a direction
+        """Displacement of the bricks at a platen, or of what :meth:`moved` has, along a direction
         since the scene was built [m]."""
-        face = self._faces.get(target.name)
+        face = self._faceAt(target)
         if not face:
             return self.moved(target)[0].dot(direction)
         return sum(share * point.moved().dot(direction) for share, point in face)
 
+    def _faceAt(self, target):
+        return None if isinstance(target, Pattern) else self._faces.get(target.name)
+
     def driftHeight(self, target):
         """Height of the points of :meth:`masonryMoved` [m]."""
-        face = self._faces.get(target.name)
+        face = self._faceAt(target)
         if not face:
             return target.recorded[2]
         return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
@@ -159,6 +169,16 @@ class Supports:
         # without loads motion is compared with the work of the weight over a picometre
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
+
+    def imbalance(self):
+        """The force that inertia takes over the largest reaction of a support, of the axis along
+        which that is most [-]; axes along which no reaction is above :data:`SMALL_REACTION` of the
+        largest do not count."""
+        of = lambda t: self.supportedBy(t) + self.structure.connectors.onSpringsOf(t)
+        reactions, inertia = [of(target) for target in self.held], self.applied() + self.carried()
+        largest = [max((abs(one[i]) for one in reactions), default=0.0) for i in range(3)]
+        counted = (i for i in range(3) if largest[i] > SMALL_REACTION * max(largest))
+        return max((abs(inertia[i]) / largest[i] for i in counted), default=0.0)
 
     def _sinkingPeriod(self):
         """The vertical period of a structure so soft that its swing under its loads could be taken

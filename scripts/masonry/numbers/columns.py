@@ -45,8 +45,7 @@ class Reading:
 
     - ``time`` since the scene was built [s]
     - ``along``, ``up``: displacement of the followed point since the push or load began [m]
-    - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
-    - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
+    - ``rotation`` of the followed block, about y in a plane, else its angle [rad]
     - ``baseShear``: force of the structure on all that is held, along the push or load [N]
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
@@ -67,14 +66,12 @@ class Reading:
             for i in structure.axes:
                 held[i] += force[i]
         self.along = self.up = self.topShear = self.rotation = 0.0
-        self.sunk = -0.0
         loading = structure.loading
         if loading.followed:
             moved, self.rotation = self.moved(loading.followed)
             self.along = moved.dot(loading.direction) - loading.origin[0]
             self.up = moved[2] - loading.origin[1]
         if loading.target:
-            self.sunk = -self.moved(loading.target)[0][2]
             self.topShear = loading.push.reaction
         along, beside = loading.direction, loading.besideThePush()
         self.baseShear = held.dot(along) - beside.dot(along)
@@ -84,9 +81,9 @@ class Reading:
     def moved(self, target):
         """Displacement [m] of a target's recorded point since the scene was built, and rotation
         [rad]."""
-        if target.name not in self._moved:
-            self._moved[target.name] = self.structure.supports.moved(target)
-        return self._moved[target.name]
+        if id(target) not in self._moved:
+            self._moved[id(target)] = self.structure.supports.moved(target)
+        return self._moved[id(target)]
 
 
 def _energies(names):
@@ -137,8 +134,8 @@ PUSH = [
     Column(
         "displacement",
         "mm",
-        "displacement of the pushed point along the push, or of the watched one along a load that"
-        " grows, since that began",
+        "displacement of the pushed point, or of the push's control, along the push, or of the"
+        " watched one along a load that grows, since that began",
         lambda r: 1e3 * r.along,
     ),
     Column(
@@ -151,19 +148,19 @@ PUSH = [
     Column(
         "top_shear",
         "kN",
-        "force that drives the pushed point",
+        "force that drives what is pushed",
         lambda r: 1e-3 * r.topShear,
     ),
     Column(
         "vertical",
         "mm",
-        "upward displacement of the pushed or watched point since then",
+        "upward displacement of this point since then",
         lambda r: 1e3 * r.up,
     ),
     Column(
         "rotation",
         "mrad",
-        "rotation of the pushed or watched block, about y in a plane, else its angle",
+        "rotation of its block, about y in a plane, else its angle; 0 of a pattern",
         lambda r: 1e3 * r.rotation,
     ),
 ]

@@ -45,7 +45,9 @@ def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[floa
     return [(1 - weight) * t + weight * b for t, b in zip(top, base)]
 
 
-def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
+def stiffness(
+    displacement: Numbers, force: Numbers, ramp: int = 0, turn: int | None = None
+) -> float:
     """Initial stiffness of a push [force/displacement]: the line through its beginning that fits
     its first part best.
 
@@ -57,6 +59,8 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     :param force: of :func:`quasiStatic`; its first value is subtracted if it is more than a
         hundredth of the peak, as of a drive that held a weight before
     :param ramp: number of the row at which the velocity of the drive has grown
+    :param turn: number of the row at which the drive turns first, where the first part ends at the
+        latest; None: it does not
     """
     if not force:
         return 0.0
@@ -64,7 +68,8 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     ramp = min(max(ramp, 1), len(force) - 1)
     peak, grown = max(force) - before, displacement[ramp] - displacement[0]
     work = squares = 0.0
-    for u, f in zip(displacement[ramp:], force[ramp:]):
+    end = None if turn is None else max(turn, ramp) + 1
+    for u, f in zip(displacement[ramp:end], force[ramp:end]):
         u, f = u - displacement[0], f - before
         work, squares = work + u * f, squares + u * u
         if (f > 0.25 * peak and u >= 2 * grown) or (f > peak / 3 and u >= 1.1 * grown):
@@ -108,7 +113,7 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:
     """Whether the force of a push is largest at its end, and grows over the last tenth of the
     displacement with more than a twentieth of its initial stiffness: nothing has given way yet."""
-    if len(force) < 10 or max(force) > 1.001 * max(force[-3:]):
+    if len(force) < 10 or max(force) > max(force[-3:]) + 1e-3 * abs(max(force)):
         return False
     start = displacement[-1] - 0.1 * (displacement[-1] - displacement[0])
     at = next(n for n, d in enumerate(displacement) if d >= start)
@@ -182,9 +187,11 @@ def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dic
     return found
 
 
-def dampedShare(column: Callable[[str], Numbers]) -> float:
-    """Share of damping in what joints and damping have taken since the first row [-]."""
-    grown = lambda name: column(name)[-1] - column(name)[0]
+def dampedShare(grown: Callable[[str], float]) -> float:
+    """Share of damping in what joints and damping have taken [-].
+
+    :param grown: gives how much a column of curve.csv has grown by its name
+    """
     damped = max(0.0, grown("damping_J"))
     lost = sum(grown(f"dissipated_{m}_J") for m in ("tension", "shear", "compression"))
     return damped / (damped + lost) if damped + lost > 0 else 0.0

@@ -5,9 +5,9 @@ terminal, the report, notebooks, studies and capacity read.
 To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`. Its function finds it from a
 :class:`RunData`, which a run has at its end and its folder has later, so both give the same number.
 
-A *push* below is the last one of the run, with those before it along the same line. Forces along it
-are at its two ends: those of all supports (``base_shear_kN``) and that of the drive
-(``top_shear_kN``).
+A *push* below is the last one of the run, with those before it with whose curve it goes on
+(``continued``). Forces along it are at its two ends: those of all supports (``base_shear_kN``) and
+that of the drive (``top_shear_kN``).
 """
 
 import math
@@ -152,6 +152,7 @@ STATES = (
 
 
 _AT_POINT, _AT_BASE, _AT_ENDS = (f"curve.csv: {c}" for c in (MOVED, BASE, f"{BASE}, {TOP}"))
+_OF_SHEAR = "curve.csv: shear_stress_MPa, in space with shear_stress_across_MPa"
 _OF_DRIFT = f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m"
 
 
@@ -205,6 +206,20 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
         lambda d: False,
     ),
 }
+
+
+def shearOf(column: Callable[[str], Any]) -> list[float]:
+    """The amount of the mean shear stress of a joint in all rows [MPa].
+
+    :param column: gives the values of a column of the joint by its name; of one that is missing
+        nothing or an error
+    """
+    along = column("shear_stress_MPa")
+    try:
+        across = column("shear_stress_across_MPa")
+    except (LookupError, ValueError):
+        across = None
+    return [*map(math.hypot, along, across or [0.0] * len(along))]
 
 
 def _ofPattern(key):
@@ -308,8 +323,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "push_work_J",
         "work of the push",
-        "Area under the curve of the push; none of a push in a pattern, whose force works on"
-        " the mean of its points.",
+        "Area under the curve of the push; none if its displacement is that of a control, on which"
+        " the force does no work.",
         f"{_AT_BASE}, {MOVED}",
         lambda d: d.work(lambda moved, base: loops.area(base, moved)),
         group="one way",
@@ -432,7 +447,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Of what the joints and the damping of the run took in all, the share of the damping,"
         " which a real wall does not have.",
         "masonry.numbers.curves.dampedShare",
-        lambda d: curves.dampedShare(d.__getitem__),
+        lambda d: curves.dampedShare(d.grown),
         group="loops",
         share=True,
     ),
@@ -542,9 +557,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "peak_shear_stress_MPa",
         "largest shear stress",
-        "Largest mean shear stress of the joint.",
-        "curve.csv: shear_stress_MPa",
-        lambda c: max(c("shear_stress_MPa")),
+        "Largest mean shear stress of the joint, in whichever direction.",
+        _OF_SHEAR,
+        lambda c: max(shearOf(c)),
         group="joint",
         brief=True,
     ),
@@ -559,9 +574,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "end_shear_stress_MPa",
         "shear stress at the end",
-        "Mean shear stress of the joint in the last row.",
-        "curve.csv: shear_stress_MPa",
-        lambda c: c("shear_stress_MPa")[-1],
+        "Mean shear stress of the joint in the last row, in whichever direction.",
+        _OF_SHEAR,
+        lambda c: shearOf(c)[-1],
         group="joint",
         brief=True,
     ),

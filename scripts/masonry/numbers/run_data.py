@@ -42,7 +42,7 @@ class RunData:
         data = cls(readRun(directory), curve.get)
         if moved is None or not data.isPush:
             return data
-        pushed = next(load[1] for load, *_ in reversed(data._stages) if load and load[0] == "push")
+        pushed = data._pushed[-1][0][1]
         upright = "vertical_mm", *(("_z_mm",) if not pushed.endswith("z") else ())
         fits = lambda name: name.endswith("_mm") and not name.endswith(upright)
         if moved not in curve or not fits(moved):
@@ -61,32 +61,53 @@ class RunData:
 
     @functools.cached_property
     def _stages(self):
-        """The load of every stage, its first row and the row after its last."""
+        """The load of every stage, its first row and the row after its last, and whether it is a
+        push that goes on with the curve of the one before."""
         found = self.run.get("stages") or []
         columns = (self.column(name) for name in (MOVED, "time_s"))
         count = len(next((values for values in columns if values is not None), ()))
         ends = [*(one["first_row"] for one in found[1:]), count]
-        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]
+        of = lambda one, end: (one.get("load"), one["first_row"], end, one.get("continued"))
+        return [*map(of, found, ends)]
 
     @functools.cached_property
     def pushes(self) -> list[tuple[int, int]]:
-        """The first row and the row after the last of the last push, and of those before it along
-        the same line without another one between."""
-        pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
-        others = [first for load, first, _ in pushed if load != pushed[-1][0]]
-        since = max(others, default=-1)
-        return [
-            (first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since
-        ]
+        """The first row and the row after the last of the last push, and of those before it with
+        whose curve it goes on."""
+        found: list[tuple[int, int]] = []
+        for load, first, end, continued in reversed(self._pushed):
+            if found and load != self._pushed[-1][0]:
+                break
+            found.insert(0, (first, end))
+            if not continued:
+                break
+        return found
+
+    @functools.cached_property
+    def _pushed(self):
+        """The stages that are pushes, as in ``_stages``."""
+        return [one for one in self._stages if one[0] and one[0][0] == "push"]
 
     @functools.cached_property
     def rows(self) -> list[int]:
-        """Numbers of the rows of the push, from 0; in a run without other loads with those before
-        the push, but not those after it."""
-        loads = [load for load, _, _ in self._stages if load]
-        if self.pushes and all(load == loads[-1] for load in loads):
-            return list(range(self.pushes[-1][1]))
-        return [n for first, end in self.pushes for n in range(first, end)]
+        """Numbers of the rows of :attr:`pushes`, from 0."""
+        return [n for push in self.pushes for n in range(*push)]
+
+    @property
+    def parts(self) -> list[list[int]]:
+        """The rows of each of :attr:`pushes`, as places in :attr:`rows`."""
+        places = range(len(self.rows))
+        parts = ([n for n in places if a <= self.rows[n] < b] for a, b in self.pushes)
+        return [part for part in parts if part]
+
+    def ofParts(self, *names: str) -> list[list[np.ndarray]]:
+        """Columns in the rows of each of :attr:`pushes`. Raises KeyError as ``data[name]``."""
+        columns = [np.array(self[name]) for name in names]
+        return [[values[part] for values in columns] for part in self.parts]
+
+    def grown(self, name: str) -> float:
+        """How much a column has grown in :attr:`pushes`."""
+        return sum(float(values[-1] - values[0]) for values, in self.ofParts(name))
 
     def whole(self, name: str) -> Any:
         """A column in all rows. Raises KeyError if curve.csv does not have it."""
@@ -136,9 +157,10 @@ class RunData:
         period, times = self.run.get("first_period_s"), self.column("time_s")
         if not period or times is None or len(self.rows) < 2:
             return 0.0
-        lasted = np.ptp([times[n] for n in self.rows])
+        parts = self.ofParts(MOVED, "time_s")
+        moved, lasted = (sum(map(np.ptp, values)) for values in zip(*parts))
         slower = self.run.get("options", {}).get("density_scaling", 1) ** 0.5  # in the scene
-        return float(slower * period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
+        return float(slower * period * moved / lasted) if lasted > 0 else 0.0
 
     @property
     def height(self) -> float | None:
@@ -182,7 +204,7 @@ class RunData:
         """Where the force has fallen to a share of its peak; in loops on the envelope of the
         positive side."""
         moved, force = np.array(self[MOVED]), self.carried(1)
-        rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
+        rows = self._outwards(1)
         if not len(rows) or force[rows].max() <= 0:
             return None
         force, at = force[rows], int(force[rows].argmax())
@@ -191,6 +213,14 @@ class RunData:
             np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse
         )
         return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))
+
+    def _outwards(self, side):
+        """The rows of the envelope of a side; of one push in one direction all."""
+        moved = np.array(self[MOVED])
+        if self.isLooped:
+            return loops.envelope(moved)[0 if side > 0 else 1]
+        farther = moved >= np.maximum.accumulate(moved)
+        return np.flatnonzero(farther) if len(self.parts) > 1 else np.arange(len(moved))
 
     @functools.cached_property
     def collapse(self) -> int | None:
@@ -201,29 +231,24 @@ class RunData:
 
     @functools.cached_property
     def sudden(self) -> tuple[float, float]:
-        """The largest sudden loss of all pushes (see :func:`masonry.numbers.curves.suddenLoss`)."""
-        columns = [self.whole(name) for name in (MOVED, TOP, BASE)]
-        return max(
-            curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes
-        )
+        """The largest sudden loss of the pushes (:func:`masonry.numbers.curves.suddenLoss`)."""
+        return max(curves.suddenLoss(*columns) for columns in self.ofParts(MOVED, TOP, BASE))
 
     @property
     def isOfControl(self) -> bool:
         """Whether the recorded displacement is that of a control, on which the force does no
         work."""
-        return bool(self.pushes) and any(
-            len(load) > 3 for load, *_ in self._stages if load and load[0] == "push"
-        )
+        return bool(self._pushed) and len(self._pushed[-1][0]) > 3
 
     def work(self, workOf: Callable[[Any, Any], float]) -> float:
-        """A work of the base shear over the displacements of the push [J]. Raises LookupError if
-        these are of a control.
+        """A work of the base shear over the displacements of the pushes, in sum [J]. Raises
+        LookupError if these are of a control.
 
-        :param workOf: function of displacements [mm] and forces [kN]
+        :param workOf: function of displacements [mm] and forces [kN] of a push
         """
         if self.isOfControl:
             raise LookupError("the force of the push works on other displacements")
-        return workOf(self[MOVED], self[BASE])
+        return sum(workOf(*columns) for columns in self.ofParts(MOVED, BASE))
 
     @functools.cached_property
     def stillGrows(self) -> bool:
@@ -237,18 +262,18 @@ class RunData:
         grown = self.run.get("velocity_grown_at_s") or 0.0
         ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
         weight = self.run.get("base_weight") or curves.SHEAR
-        return curves.stiffness(
-            self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp
-        )
+        force, turn = curves.quasiStatic(self[TOP], self[BASE], weight), None
+        if self.isLooped:
+            turns = loops.turningPoints(self[MOVED], self.run["history"]["noise_mm"])
+            turn = next((int(row) for row in turns if row), None)
+        return curves.stiffness(self[MOVED], force, ramp, turn)
 
     def dropped(self, side: int = 1) -> tuple[float, float | None]:
         """Share of the peak that is lost at the end, and the first displacement after the peak with
         less than 0.95 of it [mm] or None; in loops along the envelope of a side, positive
         outwards."""
-        moved, force = side * np.array(self[MOVED]), side * self.carried(side)
-        if self.isLooped:
-            rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
-            moved, force = moved[rows], force[rows]
+        rows = self._outwards(side)
+        moved, force = side * np.array(self[MOVED])[rows], side * self.carried(side)[rows]
         if not len(force) or not force.max() > 0:
             raise LookupError("the force is never to this side")
         at = int(force.argmax())

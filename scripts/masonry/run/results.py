@@ -24,8 +24,9 @@ or None:
   ``threads``: how many steps may use; ``steps_by_threads``: :func:`masonry.model.threads.used`, of
   the process that ended the run
 - ``stages``: of every ``stage`` its ``steps``, their ``seconds`` of wall-clock time, the number
-  ``first_row`` of its first row of curve.csv, from 0, and ``load``: its kind, its name, and that of
-  the load back
+  ``first_row`` of its first row of curve.csv, from 0, ``load``: its kind, its name, that of the
+  load back, and the control of a push if it is not what is pushed, and ``continued``: whether it
+  is a push that goes on with the curve of the one before
 - ``script``: the commands with their arguments, also those that were left out; a long list of
   numbers is a text
 - ``built``, ``held_and_loaded``: pairs of texts on the structure before the first stage; not with
@@ -50,7 +51,7 @@ or None:
   - ``looped``: whether x goes there and back, which is drawn with axes through zero and envelope
   - ``marks``: points, as ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, with
     ``"below": true`` for a text below
-  - ``rows``: numbers of the rows that are shown, from 0; else all
+  - ``rows``: pairs of the first row that is shown, from 0, and the one behind the last; else all
   - ``bounds``: horizontal lines, as ``{"y": 117.0, "text": "limit analysis, upper bound"}``
 
 - ``parts``: lists of body ids by name, each a panel of cracks.png; ``views``: direction of sight

@@ -147,10 +147,13 @@ class Run:
         self.results.log(f"{note}\n{trace}\n")
         self.results.amend(notes=self.state.notes)
 
-    def note(self, kind, name, opposite="", control=""):
-        """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
-        load = [kind, name, opposite] + [control] * bool(control)
-        self.state.loads = {**self.state.loads, str(self.entered + 1): load}
+    def note(self, kind, name, opposite="", control="", way=None):
+        """Note what the next stage loads, and the ``way`` of a push, as in
+        :class:`masonry.run.run_state.RunState`."""
+        load, number = [kind, name, opposite] + [control] * bool(control), str(self.entered + 1)
+        self.state.loads = {**self.state.loads, number: load}
+        if way:
+            self.state.ways = {**self.state.ways, number: way}
 
     @property
     def isResumed(self):

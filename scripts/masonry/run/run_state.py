@@ -40,6 +40,9 @@ class RunState:
     #: name of the load and that of the opposite one; and the target whose displacement is counted,
     #: where it is not what is pushed.
     loads: dict = field(default_factory=dict)
+    #: Of the pushes, by their numbers: whether displacements count on from the one before, and
+    #: whether it follows a history.
+    ways: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may
     #: consist of several.
     ended: dict = field(default_factory=dict)
@@ -72,8 +75,16 @@ class RunState:
         listed, end = [], dict(steps=self.steps, seconds=self.seconds["steps"])
         for number, (one, after) in enumerate(zip(self.stages, [*self.stages[1:], end]), 1):
             taken = {key: after[key] - one[key] for key in ("steps", "seconds")}
-            listed.append({**one, **taken, "load": self.loads.get(str(number))})
+            load, continued = self.loads.get(str(number)), self._continues(number)
+            listed.append({**one, **taken, "load": load, "continued": continued})
         return listed
+
+    def _continues(self, number):
+        """Whether a push goes on with the curve of the one before: both follow a history, or none
+        of them."""
+        before = max((n for n in map(int, self.ways) if n < number), default=0)
+        continued, looped = self.ways.get(str(number), (False, False))
+        return bool(continued and before and looped == self.ways[str(before)][1])
 
 
 @dataclass

@@ -147,7 +147,7 @@ class Description:
         for one in (*self.targets.values(), *self.drifts):
             found += one.columns(self.plane)
         for joint in self.joints:
-            found += joint.columns()
+            found += joint.columns(self.plane)
         for one in (*self.sections, *self.connectors, *self.overlays):
             found += one.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)

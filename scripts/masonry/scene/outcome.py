@@ -11,6 +11,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..arguments import isNumber
 from ..model import bodies
+from ..model.loading import Pattern
 from ..numbers import columns
 from ..materials.assumptions import effective
 from ..terminal import say
@@ -202,8 +203,8 @@ class ResultSummary:
         """Entries from which the numbers of a push are found."""
         model = self.model
         period, weight, grown = self._freeVibration()
-        target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
-        heights = target.recorded[2], model.supports.driftHeight(target)
+        control, sways = model.loading.control, abs(model.loading.push.direction[2]) < 1e-9
+        heights = control.recorded[2], model.supports.driftHeight(control)
         recorded, drift = (z - self.description.low[2] for z in heights)
         past = self.pushed.history
         return {
@@ -340,8 +341,8 @@ def _entry(x, label, y, what, marks=(), looped=False, **more):
 
 
 def _ofPush(outcome):
-    target, data = outcome.model.loading.target, outcome.data
-    height = f"{target.recorded[2] - outcome.description.low[2]:.3g} m above the base"
+    control, data = outcome.model.loading.control, outcome.data
+    height = f"{control.recorded[2] - outcome.description.low[2]:.3g} m above the base"
     looped, marks = bool(outcome.pushed.history), []
     if data.rows:
         moved, sides = data["displacement_mm"], (1, -1) if looped else (1,)
@@ -349,7 +350,7 @@ def _ofPush(outcome):
         marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} mm"} for x, y in ends]
     return _entry(
         "displacement_mm",
-        f"displacement of {target.name}, {height} [mm]",
+        f"{'mean ' * isinstance(control, Pattern)}displacement of {control.name}, {height} [mm]",
         {"base_shear_kN": "supports", "top_shear_kN": "loaded point"},
         "force along the push [kN]",
         marks,
@@ -361,8 +362,14 @@ def _ofPush(outcome):
 
 def _rowsOf(outcome, rows):
     """The entry of the figure with the rows that it shows, if these are not all in order."""
-    every = list(range(len(outcome.results.rows)))
-    return {} if list(rows) == every else {"rows": list(rows)}
+    if [*rows] == [*range(len(outcome.results.rows))]:
+        return {}
+    spans: list[list[int]] = []
+    for row in rows:
+        if not spans or spans[-1][1] != row:
+            spans.append([row, row])
+        spans[-1][1] += 1
+    return {"rows": spans}
 
 
 def _ofLoad(outcome, number, load):
@@ -406,13 +413,16 @@ def restsUnder(outcome, name):
 
 def _ofJoint(outcome, joint):
     column = lambda head: outcome.results.column(joint.prefixed(head))
-    reach = lambda head: max(map(abs, column(head)), default=0)
-    what = "slide" if reach("slide_mm") > reach("opening_mm") else "opening"
+    reach = lambda what: max(map(abs, column(f"{what}_mm")), default=0)
+    isHere = lambda what: joint.prefixed(f"{what}_mm") in outcome.results.columns
+    what = max(filter(isHere, ("opening", "slide", "slide_across")), key=reach)
     stresses = {
         joint.prefixed("normal_stress_MPa"): "normal, positive in tension",
-        joint.prefixed("shear_stress_MPa"): "shear",
+        joint.prefixed(
+            f"shear_stress{what.removeprefix('slide') * (what != 'opening')}_MPa"
+        ): "shear",
     }
-    if what == "slide":
+    if what != "opening":
         stresses = dict(reversed(stresses.items()))
-    x, label = joint.prefixed(f"{what}_mm"), f"mean {what} of the joint [mm]"
+    x, label = joint.prefixed(f"{what}_mm"), f"mean {what.replace('_', ' ')} of the joint [mm]"
     return _entry(x, label, stresses, "mean stress [MPa]")

@@ -8,6 +8,7 @@ import statistics
 
 from ..bricks import Bricks, summary
 from ..materials import loadingBlock
+from ..model.loading import Pattern
 from ..terminal import say
 from ..units import GRAVITY
 
@@ -118,6 +119,8 @@ def wallOf(description, loading):
     :param loading: :class:`masonry.model.loading.Loading`
     """
     target, bricks = loading.target, description.bricks
+    if isinstance(target, Pattern) or not target.box:
+        return None
     (left, front, bottom), (right, back, top) = description.low, description.high
     boxes = [[(min(c), max(c)) for c in zip(*block.corners)] for block in bricks]
     sizes = [[high - low for low, high in box] for box in boxes]
@@ -127,8 +130,6 @@ def wallOf(description, loading):
     if (
         not description.plane
         or not (description.halves or {1, 2} == set(steps))
-        or target.brick is not None
-        or loading.push.others
         or max(steps) > 2
         or any(abs(size[0] - n * half) > 1e-6 * half for size, n in zip(sizes, steps))
         or any(abs(size[2] - height) > 1e-6 * height for size in sizes)
@@ -146,7 +147,7 @@ def wallOf(description, loading):
         "unit_m": [2 * half, back - front, height],
         "precompression_Pa": target.pressed or 0.0,
         "load_height_m": None if "Y" in target.freedom else target.point[2] - bottom,
-        "measure_height_m": target.recorded[2] - bottom,
-        "pushed_towards": -1 if loading.direction[0] < 0 else 1,
+        "measure_height_m": loading.control.recorded[2] - bottom,
+        "pushed_towards": -1 if loading.push.direction[0] < 0 else 1,
         "load_line_fixed": not target.riding,
     }

@@ -115,17 +115,17 @@ class JointRecord:
         """Mean over the joint [m], negative if it closes."""
         return self._mean(self.interaction.phys.opening)
 
-    def slide(self) -> float:
-        """Mean over the joint along its first direction [m]."""
-        return self._mean(jump[1] for jump in self.interaction.geom.jumps)
+    def slide(self, axis: int = 1) -> float:
+        """Mean over the joint along its first direction [m]; ``axis`` 2: its second one."""
+        return self._mean(jump[axis] for jump in self.interaction.geom.jumps)
 
     def normalStress(self) -> float:
         """Mean over the joint [Pa], positive in tension."""
         return self._mean(stress[0] for stress in self.interaction.phys.stress)
 
-    def shearStress(self) -> float:
-        """Mean over the joint along the slide [Pa]."""
-        return self._mean(stress[1] for stress in self.interaction.phys.stress)
+    def shearStress(self, axis: int = 1) -> float:
+        """Mean over the joint, along an axis of :meth:`slide` [Pa]."""
+        return self._mean(stress[axis] for stress in self.interaction.phys.stress)
 
     def prefixed(self, name: str) -> str:
         """A name of a column or an entry of run.json, behind that of the joint, if it has one."""
@@ -136,10 +136,10 @@ class JointRecord:
         lost = zip(("tension", "shear", "compression"), self.interaction.phys.dissipated)
         return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}
 
-    def columns(self) -> Iterator[Column]:
-        """What is recorded of it."""
+    def columns(self, plane: bool) -> Iterator[Column]:
+        """What is recorded of it; ``plane``: as in :meth:`Target.columns`."""
         between = "the joint between bricks {} and {}".format(*self.bricks)
-        for name, unit, meaning, factor, mean in OF_JOINTS:
+        for name, unit, meaning, factor, mean in (*OF_JOINTS, *(() if plane else ACROSS)):
             value = lambda r, factor=factor, mean=mean: factor * mean(self)
             yield Column(self.prefixed(name), unit, meaning.format(between), value)
 
@@ -161,6 +161,23 @@ OF_JOINTS = (
         "mean shear stress of {}, along the slide",
         1e-6,
         JointRecord.shearStress,
+    ),
+)
+#: In space, too.
+ACROSS = (
+    (
+        "slide_across",
+        "mm",
+        "mean slide of {}, along its second direction",
+        1e3,
+        lambda joint: joint.slide(2),
+    ),
+    (
+        "shear_stress_across",
+        "MPa",
+        "mean shear stress of {}, along that",
+        1e-6,
+        lambda joint: joint.shearStress(2),
     ),
 )
 

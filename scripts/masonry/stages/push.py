@@ -5,9 +5,10 @@
 In a pattern several blocks are pushed by forces in a fixed proportion. The drive moves the mean of
 their points, weighted by the shares of the forces, at a constant velocity: the whole force does
 work on this displacement, so the push follows the structure beyond its peak. Displacements of the
-push are those of one target, its control.
+push are those of its control, which changes no force.
 """
 
+import math
 import zlib
 from dataclasses import replace
 from types import SimpleNamespace
@@ -35,7 +36,7 @@ from ..numbers import curves
 from ..numbers.run_data import BASE, MOVED, TOP, RunData
 from ..model.load_names import nameOfPush
 from .bounds import findBound
-from ..scene.history import CYCLES, MAX_DISPLACEMENT, parse
+from ..scene.history import CYCLES, MAX_DISPLACEMENT, MIN_AMPLITUDE, parse
 from ..run.option_table import Rate
 from ..scene.targets import AnyTarget, Target, kindOfLoaded
 from ..scene.script import PUSHES
@@ -79,9 +80,9 @@ Pushed = Annotated[
 
 
 def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
-    """What a push moves: a target as it is, anything else as a
-    :class:`masonry.model.loading.Pattern`. Raises Refused."""
-    if isinstance(value, Target):
+    """What a push moves: a target or a :class:`masonry.model.loading.Pattern` as it is, anything
+    else as a pattern. Raises Refused."""
+    if isinstance(value, (Target, Pattern)):
         return value
     if isinstance(value, dict):
         whole = sum(map(asFloat, value.values()))
@@ -151,20 +152,14 @@ def _shapeOf(model, value, direction, args):
     return of
 
 
-def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
-    """The target whose displacement a push counts, as in :func:`push`. Raises Refused."""
-    if control or isinstance(value, Target):
-        return control or value
-    found = (
-        max(value, key=lambda t: t.recorded[2])
-        if isinstance(value, dict)
-        else scene.description.followed()
-    )
-    if found is None:
-        raise Refused(
-            "push: control is missing: watch() a brick whose displacement counts, and give it"
-        )
-    return found
+def controlOf(value: Any, pushed: Any, control: Target | None) -> Any:
+    """What the displacement of a push is counted of: a target, or the pattern that is pushed.
+
+    :param value: what the user pushes, and ``control``, as in :func:`push`
+    :param pushed: it as :func:`patternOf` gives it
+    """
+    highest = isinstance(value, dict) and max(value, key=lambda t: t.recorded[2])
+    return control or highest or pushed
 
 
 def peaks(scene, rows):
@@ -218,10 +213,12 @@ def push(
     :param continued: whether displacements count on from where the push before began, of this
         target in this direction, and not from where the target is now
     :param control: the target whose displacement ``until`` and the curve count; None: what is
-        pushed, of a dict the highest, else the first that is watched or moves
+        pushed, of a dict the highest, of another pattern the mean that the drive moves. A push
+        whose drive goes ten times as far as its control ends as a collapse
     """
-    how = direction, rate, continued, control
-    return _drive(scene, "push", target, *how, until=until and until * scene.share)
+    how = direction, rate, continued
+    aimed = _aimed(scene, target, direction, control)
+    return _drive(scene, "push", aimed, *how, until=until and until * scene.share)
 
 
 @stage(bounded=True, extendable=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
@@ -245,14 +242,23 @@ def cycle(
         of the bricks below it
     :param continued: and other parameters: as in :meth:`push`
     """
-    counted = controlOf(scene, target, control)
-    turns = not counted.box or "Y" not in counted.freedom
+    aimed = _, counted = _aimed(scene, target, direction, control)
+    turns = isinstance(counted, Pattern) or not counted.box or "Y" not in counted.freedom
     height = counted.recorded[2] if turns else counted.box[0][2]
     height -= scene.description.low[2]
-    share = scene.share * (10 * height if unit == "%" else 1)
+    millimetres = 10 * height if unit == "%" else 1  # per unit
+    ends = [v / scene.share for v in (MIN_AMPLITUDE, MAX_DISPLACEMENT)]
+    for amplitude in amplitudes:
+        if not ends[0] <= millimetres * amplitude <= ends[1]:
+            low, high = (v / millimetres if millimetres > 0 else math.inf for v in ends)
+            over = f", over a height of {height:.4g} m" * (unit == "%")
+            raise Refused(
+                f"cycle: amplitude {amplitude:g} {unit} must be from {low:.4g} to {high:.4g}"
+                f" {unit}{over}"
+            )
+    share = scene.share * millimetres
     text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
-    how = direction, rate, continued, control
-    return _drive(scene, "cycle", target, *how, history=text)
+    return _drive(scene, "cycle", aimed, direction, rate, continued, history=text)
 
 
 def readableHistory(scene, target, path, *_, **__):
@@ -278,11 +284,17 @@ def follow(
 
     :param continued: and other parameters: as in :meth:`push`
     """
-    how = direction, rate, continued, control
-    return _drive(scene, "follow", target, *how, history=str(path))
+    aimed = _aimed(scene, target, direction, control)
+    return _drive(scene, "follow", aimed, direction, rate, continued, history=str(path))
 
 
-def _drive(scene, name, target, direction, rate, continued, control, **aim):
+def _aimed(scene, target, direction, control):
+    """What a push moves, and what its displacement is counted of."""
+    pushed = patternOf(scene, target, Vector3(*direction).normalized(), scene.args)
+    return pushed, controlOf(target, pushed, control)
+
+
+def _drive(scene, name, aimed, direction, rate, continued, **aim):
     args = _argumentsOf(scene, name, **aim)
     if rate is not None and args.accuracy:
         raise NotAccurate(
@@ -290,9 +302,8 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
         )
     args.rate = args.rate if rate is None else rate
     direction, running = Vector3(*direction).normalized(), scene.running
-    control = controlOf(scene, target, control)
-    pushed, loading = patternOf(scene, target, direction, args), scene.model.loading
-    pushTo(loading, pushed, control, direction, name)
+    (pushed, control), loading = aimed, scene.model.loading
+    held = pushTo(loading, pushed, control, direction, name)
     scene.pushed = args
     counted = "" if pushed is control else control.name
     began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
@@ -303,9 +314,9 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
         )
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
-    running.note("push", *names, counted)
+    running.note("push", *names, counted, way=[continued, bool(args.history)])
     if not scene.limitAnalysisOnly:
-        drivePush(scene, name, args, began, continued)
+        drivePush(scene, name, args, began, continued, held)
         loading.stopDrives()
     return DONE
 

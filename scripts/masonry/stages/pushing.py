@@ -14,7 +14,8 @@ from ..numbers import curves
 from ..numbers.quantities import IMBALANCE
 from ..run.option_table import USUAL
 from ..scene.history import aim, pathLength, turns
-from .rest import rampTime
+from ..model.motion import REST
+from .rest import REST_ENERGY_RATIO, rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
@@ -47,6 +48,8 @@ class Pushing:
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
     places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
+    #: Whether the drive of a push before held the structure, which still moved, when this one began.
+    moving: bool = False
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     #: Time [s] and base shear [kN] of the last rows, over which AVERAGED takes the mean.
@@ -55,6 +58,9 @@ class Pushing:
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
     reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
+    farthest: float = 0.0  # displacement of the present way [mm]
+    drivenTo: float = 0.0  # what the drive had gone then [mm]
+    turnedBack: bool = False  # whether the wall has not been farther for long
 
     def travelled(self, direction):
         """Length of the path so far [mm]."""
@@ -75,6 +81,16 @@ class Pushing:
             outwards = self.moved if side else -self.moved
             self.peaksAt = _exchanged(self.peaksAt, side, outwards)
         return mean
+
+    def turnsBack(self, goal):
+        """Whether the drive has gone as far as the whole present way, and :data:`AVERAGED` at
+        least, since the wall was farthest on it, for the first time."""
+        if goal.direction * (self.moved - self.farthest) > 0:
+            self.farthest, self.drivenTo = self.moved, self.driven
+        way = max(AVERAGED, abs(goal.displacement - self.last))
+        back = self.driven - self.drivenTo > way and not self.turnedBack
+        self.turnedBack = self.turnedBack or back
+        return back
 
     def retreats(self, direction, whole):
         """Whether the wall is a tenth of the whole path [mm], and 1 mm at least, behind where it
@@ -109,6 +125,7 @@ class Pushing:
                 side, out = goal.direction > 0, goal.direction * goal.displacement
                 self.reach = _exchanged(self.reach, side, max(self.reach[side], out))
                 self.growth, turned, self.turned = -self.growth, True, True
+                self.farthest, self.drivenTo = self.moved, self.driven
 
 
 def _exchanged(pair, side, value):
@@ -116,14 +133,14 @@ def _exchanged(pair, side, value):
     return [pair[0], value] if side else [value, pair[1]]
 
 
-def drivePush(scene, name, args, began, continued=False):
+def drivePush(scene, name, args, began, continued=False, held=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The velocity grows evenly from rest to ``--rate`` within one first period of the structure,
     which is measured then, so that no swing of that period is left. If not all blocks are driven,
     nothing is damped while it grows: numerical damping would act as more mass. Where the history
-    turns, the velocity changes within whole periods, :func:`rampTime` at least, because open joints
-    make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
+    turns, and where a push follows another one without rest, the velocity changes within whole
+    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
     the displacement of curve.csv, so the wall turns within 0.01 mm of the turning points. Other
     points are passed at full speed, and so is the end, unless it is that of a file.
 
@@ -134,11 +151,12 @@ def drivePush(scene, name, args, began, continued=False):
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
     :param began: name under which the run keeps where the push began
     :param continued: whether displacements count from there
+    :param held: whether the drive of a push before held the structure
     """
     run, model = scene.running, scene.model
     drive = model.loading.push
     at = run.stage(name, Pushing())
-    goals = _entered(scene, name, args, at, began, continued)
+    goals = _entered(scene, name, args, at, began, continued, held)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
 
@@ -152,7 +170,8 @@ def drivePush(scene, name, args, began, continued=False):
         goal = goals[at.passed]
         model.loading.goal = at.passed + 1, goal.displacement
         growth, start, steps = _pace(at, goal, args, every)
-        free = bool(at.period) and not at.turned and growth < 1 and not drive.damped
+        slow = at.turned or at.moving
+        free = bool(at.period) and not slow and growth < 1 and not drive.damped
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
@@ -167,7 +186,7 @@ def drivePush(scene, name, args, began, continued=False):
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
-        if at.places and not undamped:
+        if at.places and (growth == 1.0 or growth <= start):
             moved = model.loading.alongNow() - 1e-3 * at.start
             weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
             _keepVibration(run, at.period, weight or 0.0, at.now)
@@ -178,6 +197,12 @@ def drivePush(scene, name, args, began, continued=False):
         if args.history:
             at.since, at.growth = at.now, growth
         run.show(max(0, travelled / whole), detail)
+        if at.turnsBack(goal):
+            say(
+                f"note: {name}: {model.loading.control.name}, whose displacement counts, turned"
+                f" back at {at.farthest:.3g} mm, and the drive goes on, up to"
+                f" {UNFOLLOWED * whole:g} mm; another control= may say more"
+            )
         moves, turned = at.passOn(goals)
         moves = moves and not how
         early = args.history and (turned or before * at.moved < 0)
@@ -190,15 +215,15 @@ def drivePush(scene, name, args, began, continued=False):
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
-def _entered(scene, name, args, at, began, continued):
+def _entered(scene, name, args, at, began, continued, held):
     """Begin a push, with its first row, frame and period, or go on with it. Returns the points of
     its path. Parameters as in :func:`drivePush`."""
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
-        here = list(model.loading.topDisplacement())
+        here = [*model.loading.topDisplacement(), model.loading.level()]
         origin = run.state.origins[began] if continued else here
-        at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+        at.moved = at.last = at.start = at.farthest = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
             f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at"
@@ -212,6 +237,8 @@ def _entered(scene, name, args, at, began, continued):
     if first:
         run.state.origins = {**run.state.origins, began: origin}
         at.now = at.since = O.time
+        missing, moving = model.supports.unrest()
+        at.moving = held and (missing > REST or moving > REST_ENERGY_RATIO)
         at.moved = 1e3 * run.record().along
         run.frame()
         # a push that is shorter than its first period is no slow one
@@ -230,12 +257,12 @@ def _lost(model, at, reading, direction, mean, whole):
     loading = model.loading
     if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
-    if loading.hasSunk(reading.sunk + min(0.0, reading.along * loading.direction[2])):
+    if loading.hasSunk(loading.origin[3], reading.along * loading.direction[2]):
         return "the pushed point has come down by half a course"
     if at.driven > UNFOLLOWED * whole:
         return (
             f"another part gives way: the drive has gone {at.driven:.0f} mm, and"
-            f" {loading.target.name} has not followed"
+            f" {loading.control.name}, which was at {at.farthest:.3g} mm, has not followed"
         )
     return "it moves against its push" if at.retreats(direction, whole) else None
 
@@ -272,7 +299,7 @@ def _rampOf(at, args, every, turns):
     then.
 
     :param every: steps of a row at full speed
-    :param turns: whether the drive turns, and does not begin
+    :param turns: whether the drive turns, or begins on what still moves
     """
     least = rampTime(args)
     if not at.period:
@@ -290,7 +317,7 @@ def _pace(at, goal, args, every):
     The velocity grows evenly, but can be braked before the next turn: at most √(2·a·s) at the
     distance s with the deceleration a.
     """
-    growing, closer = _rampOf(at, args, every, at.turned)
+    growing, closer = _rampOf(at, args, every, at.turned or at.moving)
     braking, _ = _rampOf(at, args, every, True)
     start = _sum(at.growth, (at.now - at.since) / growing)
     row = every if start == 1.0 else closer

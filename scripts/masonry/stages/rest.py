@@ -85,6 +85,7 @@ class Resting(Waiting):
 
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
+    level: float | None = None  # of what was pushed, when the loads had grown [m]
 
 
 def buckles(scene: Any) -> bool:
@@ -179,7 +180,9 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
         at.isAtRest(missing, moving, grown)
         if load == 1:
             model.motion.checkFall()
-            if model.loading.target and model.loading.hasSunk():
+            if at.level is None:
+                at.level = model.loading.level()
+            if model.loading.hasSunk(at.level):
                 raise Collapsed("the platen has come down by half a course")
         ends = dying and at.isGivenUp(longest) or not dying and at.done >= most
         running.show(

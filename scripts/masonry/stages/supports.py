@@ -2,6 +2,7 @@
 """Drives along an axis without a run-up, and supports that are taken away or that move: ``drive``,
 ``pressJoint``, ``release`` and ``move``."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Annotated, Any, Callable, Union, cast
 
@@ -10,6 +11,8 @@ from yade import O, Vector3
 from ..arguments import Freedoms, number, orFunction
 from ..model.motion import SWUNG
 from ..errors import Refused, checkPlane
+from ..terminal import say
+from ..numbers.quantities import IMBALANCE, shearOf
 from ..scene.history import MAX_DISPLACEMENT
 from ..scene.loads import Force
 from ..scene.pressures import atPlace
@@ -66,17 +69,30 @@ def letGo(scene, target, axes, force):
     return DONE
 
 
-def displacement(scene, rows):
-    """How far each held target has moved in this stage."""
+@dataclass
+class Moving(Timed):
+    """What a stage remembers that moves supports."""
+
+    imbalance: float = 0.0  # Supports.imbalance() in the last row [-]
+    largest: float = 0.0  # and in any row so far
+
+
+def answersOfMove(scene, rows):
+    """How far each held target has moved in this stage, and what inertia takes of reactions."""
     how = "from the first row of the stage to its last, which is the collapse if the structure fell"
     for target in scene.description.targets.values():
         columns = [rows(f"{target.name}_{axis}_mm") for axis in "xyz" if target.fixed]
         squares = sum((values[-1] - values[0]) ** 2 for values in columns if values)
         if squares:
             yield Answer(f"displacement_of_{target.name}", "mm", squares**0.5, how)
+    how = (
+        "the force that inertia takes, over the largest reaction of a support along the same axis,"
+        " in the last row; 0 at rest"
+    )
+    yield Answer("dynamic_imbalance", "-", scene.running.memory.imbalance, how)
 
 
-@stage(extendable=("x", "y", "z"), options=("rate",), answers=displacement)
+@stage(extendable=("x", "y", "z"), options=("rate",), answers=answersOfMove)
 def move(
     scene: Any,
     target: HeldTargets,
@@ -87,14 +103,16 @@ def move(
 ) -> str:
     """Move fixed targets by a displacement, in straight lines at once: settlement or spreading of
     supports, or a trough under a row of them, as ``scene.move(footings, z=lambda x, y, z: -20 *
-    math.exp(-x * x / 18))``. They start and stop smoothly, and none turns.
+    math.exp(-x * x / 18))``. They start and stop smoothly, and none turns. Reactions have the
+    inertia of what moves, which a note tells if it is much: :meth:`settle` takes it out of the last
+    row, a lower rate out of all.
 
     :param target: one that is held, or a list of them
     :param x: [mm], or a function that gives it of the recorded point (x, y, z) [m] of a target; so
         are ``y`` and ``z``
     :param rate: of the one that moves farthest [mm/s]; None: ``--rate``
     """
-    at = scene.running.stage("move", Timed())
+    at = scene.running.stage("move", Moving())
     targets = cast("list[Target]", target)
     paths = [_path(scene, one, (x, y, z)) for one in targets]
     rate = 1e-3 * (scene.args.rate if rate is None else rate)
@@ -119,7 +137,17 @@ def move(
         for state, path in zip(states, paths):
             state.vel = speed * (1e-3 / distance * path)
 
-    timed(scene, at, duration, before)
+    def after():
+        at.imbalance = scene.model.supports.imbalance()
+        at.largest = max(at.largest, at.imbalance)
+
+    timed(scene, at, duration, before, after)
+    if at.largest > IMBALANCE:
+        say(
+            f"note: move: of a reaction inertia is {100 * at.imbalance:.0f} % in the last row, and"
+            f" up to {100 * at.largest:.0f} % in others: settle() takes it out of the last one, a"
+            " lower rate= out of all"
+        )
     scene.running.state.supportsMoved = True
     for state in states:
         state.vel = Vector3.Zero
@@ -137,22 +165,18 @@ def _path(scene, target, along):
     return path
 
 
-#: Stresses of a recorded joint that are answers: name, column, and sign.
-STRESSES = (
-    ("peak_normal_stress", "normal_stress_MPa", 1),
-    ("peak_compressive_stress", "normal_stress_MPa", -1),
-    ("peak_shear_stress", "shear_stress_MPa", 1),
-)
-
-
 def stresses(scene, rows):
     """The largest mean stresses of recorded joints, in tension, compression and shear."""
     how = "the largest mean over the joint in this stage"
     for joint in scene.description.joints:
-        for name, column, sign in STRESSES:
-            if values := rows(joint.prefixed(column)):
-                value = max(sign * v for v in values)
-                yield Answer(joint.prefixed(name), "MPa", value, how)
+        own = lambda head: rows(joint.prefixed(head))
+        for name, values in (
+            ("peak_normal_stress", own("normal_stress_MPa")),
+            ("peak_compressive_stress", [-v for v in own("normal_stress_MPa")]),
+            ("peak_shear_stress", shearOf(own)),
+        ):
+            if values:
+                yield Answer(joint.prefixed(name), "MPa", max(values), how)
 
 
 @stage(options=("rate",), answers=stresses)

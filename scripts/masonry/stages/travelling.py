@@ -131,5 +131,5 @@ def travel(
         moved = [now - was for now, was in zip(places(), at.began)]
         at.moved = [*at.moved, *moved[place : place + 1]]
         at.after = max(abs(one) for one in moved)
-        at.place, at.done, at.quiet = place + 1, 0, 0
+        at.place, at.done, at.quiet, at.level = place + 1, 0, 0, None
     return DONE

@@ -67,7 +67,8 @@ def curve(record):
         numbered = ", ".join(map(str, pushes))
         yield note(
             f"The run has {len(pushes)} pushes, the stages {numbered}. The curve and the numbers of"
-            " the push are those of the last one, and of those before it along the same line."
+            " the push are those of the last one, and of those before it with whose curve it goes"
+            " on (continued)."
         )
 
 
