@@ -38,7 +38,7 @@ int MasonryJointLoop::refinedJoints() const {
     auto& store = SceneStore::present();
     store.update();
     return int(std::count_if(store.joints.begin(), store.joints.end(),
-                             [](const JointView& joint) { return joint.geom->refined().points > 0; }));
+                             [](const JointView& joint) { return joint.geom->refined().coarse != nullptr; }));
 }
 
 } // namespace masonry

@@ -83,7 +83,7 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
 // The numbers of points come first, because all other numbers of joints follow them.
 void transferJoints(SceneStore& store, Transfer& to) {
     to.numbers("points", [&](StateNumbers& n) {
-        std::vector<int> points;
+        std::vector<PointCounts> points;
         for (const auto& joint : store.joints) {
             points.push_back(joint.geom->refined().points);
             n(points.back());

@@ -98,10 +98,18 @@ inline Quaternionr meanOf(const Quaternionr& one, Quaternionr& two) {
     return Quaternionr((one.coeffs() + two.coeffs()).eval()).normalized();
 }
 
-// What Refinement has made of a joint: its number of points along a side, and the points that it was made with, which
-// copies of a joint have in common. 0 and null if it was not refined.
+// Numbers of points along the tangent of a joint and across it; a row has one across. 0: those that it was made with.
+struct PointCounts {
+    int along = 0, across = 0;
+
+    bool operator==(const PointCounts& other) const { return along == other.along && across == other.across; }
+    template <class Visit> void visitState(Visit&& visit) { visit(along, across); }
+};
+
+// What Refinement has made of a joint: its numbers of points, and the points that it was made with, which copies of a
+// joint have in common. Null if it was not refined.
 struct RefinedJoint {
-    int points = 0;
+    PointCounts points;
     std::shared_ptr<const std::vector<JointPoint>> coarse;
 
     void visitState(StateNumbers&);

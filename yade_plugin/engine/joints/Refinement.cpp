@@ -41,10 +41,9 @@ bool isRow(const Points& points) {
     return apart(2) <= close * apart(1);
 }
 
-// So many points along the row that a joint was made with, or along both sides of a joint in space.
-Points refinedPoints(const JointReference& r, const Points& first, int count) {
+Points refinedPoints(const JointReference& r, const PointCounts& counts) {
     Points all;
-    for (const auto& part : subdivide(r.polygon(), r.normal, r.tangent, count, isRow(first) ? 1 : count))
+    for (const auto& part : subdivide(r.polygon(), r.normal, r.tangent, counts.along, counts.across))
         all.push_back({r.axes().transpose() * (part.centre - r.sides[0].position), part.area});
     return all;
 }
@@ -161,7 +160,7 @@ void follow(LawColumns& to, int point, const LawColumns& from, const std::vector
 }
 
 // Gives a joint other points, which take over its state. Returns the energy that it gets by that [J].
-double refine(const JointView& joint, int count) {
+double refine(const JointView& joint, const PointCounts& counts) {
     auto& shapes = *joint.geom->group;
     const int j = joint.geom->index;
     const auto old = pointsOf(*joint.geom);
@@ -170,8 +169,9 @@ double refine(const JointView& joint, int count) {
     before.states->take(0, *joint.phys->group, joint.phys->index);
     const auto& from = before.columns();
 
-    SingleJointColumns after(joint, refinedPoints(joint.geom->reference(), old, count));
-    after.shapes->refined[0] = {count, std::make_shared<const Points>(old)};
+    SingleJointColumns after(joint, refinedPoints(joint.geom->reference(), counts));
+    const auto& coarse = joint.geom->refined().coarse;
+    after.shapes->refined[0] = {counts, coarse ? coarse : std::make_shared<const Points>(old)};
     auto& to = after.columns();
     std::vector<std::vector<Share>> shares;
     std::vector<double> areas(old.size(), 0.0); // of the new points, by the old ones
@@ -248,17 +248,27 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.stat
     const auto& columns = *columns_;
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
-    if (p.elastic || kind.attached || kind.shapes->refined[0].points) return;
-    const auto now = pointsOf(kind);
-    const bool row = isRow(now);
-    const int count = wanted ? wanted : row ? pointsOfRow : pointsOfSide;
-    const auto then = refinedPoints(first, now, count);
-    if (then.size() <= now.size() || !sameMoments(now, then)) return;
+    const auto& coarse = kind.shapes->refined[0].coarse;
+    const bool dry = !(p.tensileStrength > 0 || p.cohesion > 0);
+    if (p.elastic || kind.attached || (coarse && !dry)) return;
+    const auto now = coarse ? *coarse : pointsOf(kind);
+    row_ = isRow(now);
+    const auto found = [&](int along, int across) {
+        const PointCounts counts{along, row_ ? 1 : across};
+        const auto then = refinedPoints(first, counts);
+        return then.size() > now.size() && sameMoments(now, then) ? counts : PointCounts{};
+    };
+    if (dry) {
+        const int most = row_ || first.polygon().size() == 4 ? pointsOfOpening : pointsOfFan;
+        opened_ = found(wanted ? wanted : most, fewest);
+    }
+    const int count = wanted ? wanted : row_ ? pointsOfRow : pointsOfSide;
+    const auto counts = found(count, count);
+    if (!counts.along) return;
     elasticLimit_ = columns.law().compression().elasticLimit;
-    const bool bonded = columns.column(Role::BondDamage, 0, 0) && (p.tensileStrength > 0 || p.cohesion > 0);
-    cracks_ = (elasticLimit_ == 0 || !row) && bonded;
+    cracks_ = (elasticLimit_ == 0 || !row_) && columns.column(Role::BondDamage, 0, 0) && !dry;
     if (elasticLimit_ == 0 && !cracks_) return;
-    points_ = count;
+    yielded_ = counts;
     if (!cracks_) return;
     const auto within = [&](double sigma, double tau) { return !yields(sigma / company, tau / company, 0); };
     constexpr double most = 1e12, least = 1; // [Pa]
@@ -280,11 +290,51 @@ bool Refinement::Limit::yields(double sigma, double a, double b) const {
     return f.tension > 0 || f.slip > 0;
 }
 
-// Whether a point of a joint has reached this part of the limit, or was beyond it already.
-bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, int j) const {
+// Points of a joint that has reached this part of what opens it, if its bed is compliant.
+PointCounts Refinement::countsIfOpening(const JointKind& kind, const Limit& limit, double part, int j) const {
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.unsynchronised();
-    if (shapes.converted[j]) return false;
+    const double k = columns.stiffness().normal;
+    const auto stressAt = [&](int p) {
+        return shapes.pointwise[j] ? columns.state(p, j).normalStress : k * shapes.intactJumpAt(p, j)[0];
+    };
+    double force = 0, area = 0, highest = -HUGE_VAL;
+    Vector3r middle = Vector3r::Zero(), pressed = Vector3r::Zero();
+    for (int p = 0; p < shapes.points; ++p) {
+        const double stress = stressAt(p), a = shapes.areaAt(p, j);
+        highest = std::max(highest, stress);
+        area += a;
+        force += a * stress;
+        middle += a * shapes.offsetAt(p, j);
+        pressed += a * stress * shapes.offsetAt(p, j);
+    }
+    if (!(force < 0) || highest * area < (1 - part) * force) return {};
+    middle /= area;
+    const Vector3r lever = pressed / force - middle; // of the force
+    double along = 0, across = 0, mixed = 0;         // second moments of the area [m⁴]
+    for (int p = 0; p < shapes.points; ++p) {
+        const Vector3r arm = shapes.offsetAt(p, j) - middle;
+        along += shapes.areaAt(p, j) * arm[1] * arm[1];
+        across += shapes.areaAt(p, j) * arm[2] * arm[2];
+        mixed += shapes.areaAt(p, j) * arm[1] * arm[2];
+    }
+    const double u = lever[1], v = lever[2];
+    const double squaredLength = 12 * (along * u * u + 2 * mixed * u * v + across * v * v) / (area * (u * u + v * v));
+    const auto& r = shapes.joints[j];
+    const double height = size_.dot(r.normal.cwiseAbs());
+    if (!(-force / area * height * height >= leastLean * k * r.span()[0] * squaredLength)) return {};
+    auto counts = limit.opened();
+    const double first = u * u * across, second = v * v * along; // squares of what opens it along and across
+    if (!limit.row() && second > first) std::swap(counts.along, counts.across);
+    if (!limit.row() && std::min(first, second) > both * both * std::max(first, second))
+        counts.along = counts.across = std::min(pointsOfBoth, std::max(counts.along, counts.across));
+    return counts;
+}
+
+// Whether a point of a joint has reached this part of the limit, or was beyond it already.
+bool Refinement::yields(const JointKind& kind, const Limit& limit, double part, int j) const {
+    const auto& shapes = *kind.shapes;
+    const auto& columns = *kind.states->columns.unsynchronised();
     for (int p = 0; p < shapes.points && !shapes.pointwise[j]; ++p) {
         const auto& k = columns.stiffness();
         const Vector3r jump = shapes.intactJumpAt(p, j);
@@ -301,8 +351,29 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
     return false;
 }
 
+// The points that a joint gets which has reached this part of a limit; none if it keeps those that it has.
+PointCounts Refinement::countsIfDue(const JointKind& kind, const Limit& limit, double part, int j) const {
+    if (kind.shapes->converted[j]) return {};
+    const auto now = kind.shapes->refined[j].points;
+    auto then = now;
+    const auto add = [&](const PointCounts& more) {
+        then = {std::max(then.along, more.along), std::max(then.across, more.across)};
+    };
+    const auto lacks = [&](const PointCounts& more) { return more.along > now.along || more.across > now.across; };
+    if (lacks(limit.yielded()) && yields(kind, limit, part, j)) add(limit.yielded());
+    if (limit.opened().along && (!limit.row() || lacks(limit.opened()))) add(countsIfOpening(kind, limit, part, j));
+    return then == now ? PointCounts{} : then;
+}
+
 void Refinement::readLimits(const SceneContents& store) {
     limits_.clear();
+    Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
+    for (const auto& joint : store.joints)
+        for (const auto& side : joint.geom->reference().sides) {
+            low = low.cwiseMin(side.position);
+            high = high.cwiseMax(side.position);
+        }
+    size_ = high - low;
     for (const auto& kind : store.kinds)
         limits_.emplace_back(kind, store.loop->points);
     revision_ = store.revision();
@@ -313,15 +384,16 @@ bool Refinement::look(SceneContents& store) {
     changed_.clear();
     if (store.revision() != revision_ || store.loop->points != points_) readLimits(store);
     if (store.scene().iter % every != 0) return false;
-    std::map<std::pair<const JointShapes*, int>, int> due; // joints, and the points that they get
+    std::map<std::pair<const JointShapes*, int>, PointCounts> due; // joints, and the points that they get
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
-        if (limits_[k].points() == 0) continue;
+        if (!limits_[k].yielded().along && !limits_[k].opened().along) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
-            if (!isDue(kind, limits_[k], company, j)) continue;
-            due[{kind.shapes.get(), j}] = limits_[k].points();
-            any = any || isDue(kind, limits_[k], share, j);
+            const auto counts = countsIfDue(kind, limits_[k], company, j);
+            if (!counts.along) continue;
+            due[{kind.shapes.get(), j}] = counts;
+            any = any || countsIfDue(kind, limits_[k], share, j).along;
         }
     }
     if (!any) return false;
@@ -363,21 +435,24 @@ void Refinement::count(SceneContents& store) {
     changed_.clear();
 }
 
-bool Refinement::setPoints(SceneContents& store, const std::vector<int>& refined) {
-    std::vector<std::pair<const JointView*, int>> change; // joints and their new numbers of points
+bool Refinement::setPoints(SceneContents& store, const std::vector<PointCounts>& refined) {
+    std::vector<std::pair<const JointView*, PointCounts>> change; // joints and their new numbers of points
     for (std::size_t n = 0; n < store.joints.size(); ++n) {
         const auto& joint = store.joints[n];
-        const int count = refined[n];
-        if (count == joint.geom->refined().points) continue;
-        const bool fits = count == 0 || (count >= fewest && count <= most);
+        const auto counts = refined[n];
+        if (counts == joint.geom->refined().points) continue;
+        const auto fit = [](int count) { return count >= fewest && count <= most; };
+        const bool row = isRow(pointsOf(*joint.geom));
+        const bool fits =
+            counts == PointCounts{} || (fit(counts.along) && (row ? counts.across == 1 : fit(counts.across)));
         if (!fits || joint.geom->reference().attached) return false;
-        change.emplace_back(&joint, count);
+        change.emplace_back(&joint, counts);
     }
-    for (const auto& [joint, count] : change) {
+    for (const auto& [joint, counts] : change) {
         const auto& coarse = joint->geom->refined().coarse;
         const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
-        const SingleJointColumns fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
-        fresh.shapes->refined[0] = {count, count ? first : nullptr};
+        const SingleJointColumns fresh(*joint, counts.along ? refinedPoints(joint->geom->reference(), counts) : *first);
+        fresh.shapes->refined[0] = {counts, counts.along ? first : nullptr};
         fresh.shapes->scene = joint->geom->group->scene;
         fresh.shapes->inScene = true; // so that its points stay to the bit, also if all of a group go back to theirs
         fresh.attachTo(*joint);

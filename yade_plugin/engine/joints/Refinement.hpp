@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// More points for joints between rigid blocks that are about to yield. While a joint is elastic, few points along it
-// say exactly what it does; where crushing or a crack begins and how far it reaches, only many do.
-// yade_plugin/README.md, Points where a joint yields, says what the new points take over.
+// More points for joints between rigid blocks that are about to yield or, dry and compliant, to open. While a joint is
+// elastic and closed, few points along it say exactly what it does; how far crushing, a crack or the pressed part of an
+// open joint reaches, only many do. yade_plugin/README.md, Points where a joint yields or opens, says when, and what
+// the new points take over.
 #pragma once
 #include "SceneContents.hpp"
 
@@ -10,7 +11,8 @@ namespace masonry {
 class Refinement {
 public:
     static constexpr int every = 10; // steps between two looks
-    // Part of the elastic limit of the cap, or of the strength, at which a joint gets its points.
+    // Part of the elastic limit of the cap, of the strength, or of the lever of the force at which an end opens, at
+    // which a joint gets its points.
     static constexpr double share = 0.9;
     // The part at which joints get theirs when another does: reading all joints of a scene again takes as long as some
     // dozen steps.
@@ -18,22 +20,30 @@ public:
     // Points that a joint gets whose points stand in a row, unless JointLoop::points says.
     static constexpr int pointsOfRow = 8;
     static constexpr int pointsOfSide = 5; // the same along each side of a joint in space
-    static constexpr int fewest = 3;       // points along a side that have the true rotational stiffness
-    static constexpr int most = 100;       // points along a side
+    // Points that a dry joint gets along the side along which it opens; the other side keeps `fewest`.
+    static constexpr int pointsOfOpening = 14;
+    static constexpr int pointsOfBoth = 8; // along both sides of a joint that opens along both
+    static constexpr double both = 0.25;   // share of one side in the other from which on it opens along both
+    static constexpr int pointsOfFan = 6;  // of a face in space that has not four corners
+    // Least lean of a compliant structure: the displacement of its top over the length of a joint, if all its joints
+    // turned as one whose end is about to open.
+    static constexpr double leastLean = 1e-3;
+    static constexpr int fewest = 3; // points along a side that have the true rotational stiffness
+    static constexpr int most = 100; // points along a side
 
-    // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at
-    // them. Joints with fewer than three points along a side keep them. Returns whether joints got points: SceneStore
-    // must then read them again.
+    // Refines the joints of a scene that are about to yield or to open, as JointLoop::points says, if this is a step to
+    // look at them. Joints with fewer than three points along a side keep them. Returns whether joints got points:
+    // SceneStore must then read them again.
     bool look(SceneContents&);
     // After the joints have made their step: counts what joints that were refined before it give or take by the forces
     // of the step before, half of which act along this one.
     void count(SceneContents&);
 
-    // Gives the joints of a scene the numbers of points along them in `refined`, one number a joint in the store's
-    // order; 0 stands for the points that a joint was made with. The state of a joint whose points change is that of a
+    // Gives the joints of a scene the numbers of points in `refined`, one entry a joint in the store's order; 0 stands
+    // for the points that a joint was made with. The state of a joint whose points change is that of a
     // new one, and SceneStore must read the joints again. Returns false, and changes nothing, if a joint cannot have
     // these points.
-    static bool setPoints(SceneContents&, const std::vector<int>& refined);
+    static bool setPoints(SceneContents&, const std::vector<PointCounts>& refined);
 
 private:
     // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of
@@ -41,7 +51,11 @@ private:
     class Limit {
     public:
         Limit(const JointKind&, int wanted);
-        int points() const { return points_; } // along a side that a joint gets; 0: it keeps those that it has
+        // Points that a joint gets when it yields, and when one of its ends opens along the first side; 0: it keeps
+        // those that it has.
+        const PointCounts& yielded() const { return yielded_; }
+        const PointCounts& opened() const { return opened_; }
+        bool row() const { return row_; } // whether points stand in a row
         bool cracks() const { return cracks_; }
         bool isReached(double part, double normalStress, double shearStressA, double shearStressB) const;
 
@@ -49,14 +63,17 @@ private:
         bool yields(double normalStress, double shearStressA, double shearStressB) const;
 
         const LawColumns* columns_;
-        int points_ = 0;
+        PointCounts yielded_, opened_;
+        bool row_ = false;
         double elasticLimit_ = 0; // in compression [Pa]; 0: none
         bool cracks_ = false;     // whether the limits of its bond count
         // Normal and shear stress [Pa] of the bond up to which the law need not be called.
         double tension_ = 0, slip_ = 0;
     };
     void readLimits(const SceneContents&);
-    bool isDue(const JointKind&, const Limit&, double part, int joint) const;
+    bool yields(const JointKind&, const Limit&, double part, int joint) const;
+    PointCounts countsIfOpening(const JointKind&, const Limit&, double part, int joint) const;
+    PointCounts countsIfDue(const JointKind&, const Limit&, double part, int joint) const;
 
     // A joint that was refined in this step, with the forces at its points before and after that.
     struct Changed {
@@ -70,9 +87,10 @@ private:
     };
 
     std::vector<Changed> changed_;
-    std::vector<Limit> limits_; // of the store's kinds
-    long revision_ = -1;        // SceneContents::revision() for which they were read
-    int points_ = 0;            // JointLoop::points for which they were read
+    std::vector<Limit> limits_;        // of the store's kinds
+    long revision_ = -1;               // SceneContents::revision() for which they were read
+    int points_ = 0;                   // JointLoop::points for which they were read
+    Vector3r size_ = Vector3r::Zero(); // of a box around the blocks' centres [m]
 };
 
 } // namespace masonry

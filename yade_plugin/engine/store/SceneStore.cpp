@@ -319,7 +319,7 @@ void SceneStore::readJoints() {
         bool known = false;
         for (int j = 0; j < count; ++j) {
             const auto& joint = found[group.members[j]];
-            known = known || (joint.geom->group->inScene && !joint.geom->refined().points);
+            known = known || (joint.geom->group->inScene && !joint.geom->refined().coarse);
             kind.shapes->take(j, *joint.geom->group, joint.geom->index);
             kind.states->take(j, *joint.phys->group, joint.phys->index);
             joint.geom->group = kind.shapes;
