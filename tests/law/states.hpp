@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What tests of all laws have in common: chance, states and energies.
+// What tests of all laws have in common: states and energies.
 #pragma once
+#include "../chance.hpp"
 #include "law/common/JointState.hpp"
 #include <array>
-#include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
 namespace masonry {
-
-struct Chance {
-    std::mt19937_64 engine;
-    double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); }
-    double logarithmic(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-    bool happens(double p) { return between(0, 1) < p; }
-    std::size_t oneOf(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(engine); }
-};
 
 inline double sum(const Energies& e) { return e.tension + e.shear + e.compression; }
 
