@@ -923,12 +923,11 @@ TEST_CASE("damping of a subcontact without bond slips at friction times the pres
 }
 
 TEST_CASE("damping adds all of its shear stress where friction bears it, else as much as friction bears") {
-    std::mt19937 dice(5);
-    std::uniform_real_distribution<> u(0, 1);
+    Dice dice(5);
     const double bound = coefficient * 1e6;
     for (int trial = 0; trial < 1000; ++trial) {
-        const double a = 2 * M_PI * u(dice), b = 2 * M_PI * u(dice), size = bound * u(dice),
-                     other = 2 * bound * u(dice);
+        const double a = dice.between(0, 2 * M_PI), size = dice.between(0, bound);
+        const double b = dice.between(0, 2 * M_PI), other = dice.between(0, 2 * bound);
         const Shear law{size * std::cos(a), size * std::sin(a)}, added{other * std::cos(b), other * std::sin(b)};
         const Damped after(-1e6, law, {0, {added.a / damped, added.b / damped}});
         const double ofWhole = std::hypot(law.a + added.a, law.b + added.b);
