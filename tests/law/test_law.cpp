@@ -384,15 +384,20 @@ TEST_CASE("the brittle Coulomb set drops at the first yield and never crushes") 
     CHECK(shear.state.normalStress == within(-1e-3 * shear.k.normal - 0.5e6, 1e-9));
 }
 
+namespace {
+
+std::string refused(const JointProperties& p) {
+    try {
+        PiecewiseLaw law(p);
+    } catch (const std::invalid_argument& e) {
+        return e.what();
+    }
+    return "accepted";
+}
+
+} // namespace
+
 TEST_CASE("refusals name the joint, the value with its unit and the bound, all at once") {
-    const auto refused = [](const JointProperties& p) {
-        try {
-            PiecewiseLaw law(p);
-        } catch (const std::invalid_argument& e) {
-            return std::string(e.what());
-        }
-        return std::string("accepted");
-    };
     using P = JointProperties;
     const double nan = std::nan("");
     CHECK(refused({}) == "accepted");
@@ -442,6 +447,9 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
     P enough;
     enough.compressiveFractureEnergy = 12208;
     CHECK(refused(enough) == "accepted");
+}
+
+TEST_CASE("refusals of tables name the row and what is wrong with it") {
     const struct {
         std::vector<TableRow> rows;
         const char* message;
@@ -451,10 +459,10 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
         {{{1, 0}, {2, 0.5}, {2, 1}}, "row 3: ratio 2 must be above 2 of the row before"},
         {{{1, 0}, {2, 0.5}, {3, 0.4}}, "row 3: damage 0.4 falls below 0.5 of the row before"},
         {{{1, 0}, {2, 1.5}}, "row 2: damage 1.5 is outside 0 to 1"},
-        {{{1, 0}, {nan, 1}}, "row 2: ratio and damage must be finite numbers"},
+        {{{1, 0}, {std::nan(""), 1}}, "row 2: ratio and damage must be finite numbers"},
     };
     for (const auto& [rows, message] : tables) {
-        P torn, slid;
+        JointProperties torn, slid;
         torn.tensionTable = slid.shearTable = rows;
         CHECK(refused(torn) == std::string("joint \"bed\": tension table, ") + message);
         CHECK(refused(slid) == std::string("joint \"bed\": shear table, ") + message);
