@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What holds for packs of numbers, whatever their width. Each of the files test_pack_*.cpp compiles this function for
-// its own vector units: it defines MASONRY_PACK_BYTES and PACK_CLAIMS, the name of the function. The standard headers
-// stand before the pragma for these units, so that their functions are not compiled for them.
+// What holds for packs of numbers, whatever their width. test_common.cpp and the files test_pack_*.cpp compile this
+// function, each for its own vector units: it defines MASONRY_PACK_BYTES, if not as wide as for any processor, and
+// PACK_CLAIMS, the name of the function. The standard headers stand before the pragma for these units, so that their
+// functions are not compiled for them.
 #include "common/Pack.hpp"
 
 // Calculates with one number and with a pack that holds it in its last place, and says where the results differ; an

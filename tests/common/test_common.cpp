@@ -167,7 +167,8 @@ TEST_CASE("a name with up to two wrong letters is found again, whatever letters 
 
 // ---- packs of numbers -----------------------------------------------------------------------------------------------
 
-std::string differencesAny(double a, double b);
+#define PACK_CLAIMS differencesAny // packs of two numbers, for any processor
+#include "pack_claims.hpp"
 std::string differencesAvx2(double a, double b);
 std::string differencesAvx512(double a, double b);
 

@@ -2,8 +2,8 @@
 // Search for paths on which a joint gives back more work than it was given: hill climbing over closed paths of the
 // displacement jump in three dimensions, for joints drawn at random with all that the cyclic law can do.
 #pragma once
+#include "../chance.hpp"
 #include "law/cyclic_softening/CyclicLaw.hpp"
-#include "states.hpp"
 #include <array>
 #include <cmath>
 #include <vector>

@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A subcontact that a law moves along a path of the displacement jump, and joints drawn at random.
+// A subcontact that a law moves along a path of the displacement jump, joints drawn at random, and how states differ.
 #pragma once
+#include "closed_cycles.hpp"
 #include "law/Laws.hpp"
-#include "law/cyclic_softening/CyclicLaw.hpp"
-#include "states.hpp"
+#include <array>
 #include <functional>
+#include <string>
 #include <type_traits>
 
 namespace masonry {
+
+inline double sum(const Energies& e) { return e.tension + e.shear + e.compression; }
+
+// Names of the numbers in which a subcontact after the law for one subcontact differs from the same one in columns, to
+// the last bit; empty if none does.
+template <class State>
+std::string difference(const State& one, const Energies& lostByOne, const State& other, const Energies& lostByOther) {
+    const auto visit = [](const State& s, const Energies& lost, auto&& see) {
+        State::visitNumbers(s, [&](const char* name, double number, int) { see(name, number); });
+        see("normal stress", s.normalStress), see("regime", double(s.regime));
+        see("tension", lost.tension), see("shear", lost.shear), see("compression", lost.compression);
+    };
+    std::array<double, 64> numbers;
+    std::size_t n = 0;
+    std::string found;
+    visit(one, lostByOne, [&](const char*, double number) { numbers.at(n++) = number; });
+    n = 0;
+    visit(other, lostByOther, [&](const char* name, double number) {
+        if (number != numbers[n++]) found += std::string(name) + " ";
+    });
+    return found;
+}
 
 inline ElasticStiffness own(const JointProperties& p) { return {p.normalStiffness, p.shearStiffness}; }
 
@@ -47,14 +70,21 @@ template <class L> struct PathOf {
             look();
         }
     }
-    void press(double sigma, int steps = 10) {
-        move({sigma / k.normal - (state.opening + state.crushing - state.dilation), {}}, steps);
+    double elasticOpening() const { return state.opening + state.crushing - state.dilation; }
+    void press(double sigma, int steps = 10) { move({sigma / k.normal - elasticOpening(), {}}, steps); }
+    void slideUnder( // constant normal stress, so that it may rise
+        double sigma, const Shear& by, int steps, const std::function<void()>& look = [] {}) {
+        for (int i = 0; i < steps; ++i) {
+            step({sigma / k.normal - elasticOpening(), {by.a / steps, by.b / steps}});
+            look();
+        }
     }
     double stored() const { return sum(law.stored(k, state)); }
     double lost() const { return sum(dissipated); }
 };
 
 struct Dice : Chance {
+    using Chance::Chance;
     JointProperties properties() {
         JointProperties p;
         p.normalStiffness = logarithmic(1e9, 1e13);
@@ -85,38 +115,15 @@ struct Dice : Chance {
         p.capLinear = happens(0.5) ? 0 : between(-0.3, 0.3) * p.compressiveStrength;
         return p;
     }
-    JointProperties cyclic() {
-        for (;;) {
-            JointProperties p;
-            p.law = "cyclic";
-            p.shearStiffnessLoss = happens(0.4) ? 0 : between(0, 0.9);
-            p.compressionStiffnessLoss = happens(0.3) ? 0 : between(0, 0.99);
-            p.bondLossByCrushing = happens(0.3) ? 0 : between(0, 1);
-            if (happens(0.5)) {
-                p.dilatancy = between(0, 0.3);
-                p.dilatancyDecay = happens(0.5) ? 0 : logarithmic(1, 1e4);
-            }
-            if (happens(0.5)) p.residualCohesion = between(0, 0.05e6);
-            if (happens(0.3)) p.friction = 0.6;
-            if (happens(0.25)) {
-                p.initialClosingStiffness = logarithmic(1e9, 3e11);
-                p.closureLimit = logarithmic(1e-6, 1e-3);
-                p.tensileStrength = 0;
-                p.compressionStiffnessLoss = 0;
-            }
-            p.cap = !happens(0.3);
-            if (happens(0.3)) {
-                p.compressiveStrength = 1e6;
-                p.compressiveFractureEnergy = 5000;
-            }
-            if (problemsOf(p).empty()) return p;
-        }
-    }
-    // What a law can do.
-    template <class L> JointProperties of() {
-        if constexpr (std::is_same_v<L, CyclicLaw>) return cyclic();
-        return properties();
-    }
 };
+
+// A joint for a law: for the cyclic one with strengths that lie close together.
+template <class L> DrawnJoint drawn(Dice& dice) {
+    if constexpr (std::is_same_v<L, CyclicLaw>) return DrawnJoint::of(dice);
+    const auto p = dice.properties();
+    const double softer = dice.happens(0.5) ? 1 : dice.between(0.05, 1), kn = p.normalStiffness * softer;
+    const double strongest = std::max(p.tensileStrength, p.cohesion) + (p.cap ? p.compressiveStrength : 0) + 1;
+    return {p, {kn, p.shearStiffness * softer}, strongest / kn};
+}
 
 } // namespace masonry

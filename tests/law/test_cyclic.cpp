@@ -43,18 +43,8 @@ ElasticStiffness lumped(const JointProperties& p) { // with calcium-silicate uni
 }
 
 double length(const Shear& v) { return std::sqrt(v.a * v.a + v.b * v.b); }
-double elasticOpening(const CyclicState& s) { return s.opening + s.crushing - s.dilation; }
 
 using Path = PathOf<CyclicLaw>;
-
-// A joint for a law: for the cyclic one with strengths that lie close together.
-template <class L> DrawnJoint drawn(Dice& dice) {
-    if constexpr (std::is_same_v<L, CyclicLaw>) return DrawnJoint::of(dice);
-    const auto p = dice.properties();
-    const double softer = dice.happens(0.5) ? 1 : dice.between(0.05, 1), kn = p.normalStiffness * softer;
-    const double strongest = std::max(p.tensileStrength, p.cohesion) + (p.cap ? p.compressiveStrength : 0) + 1;
-    return {p, {kn, p.shearStiffness * softer}, strongest / kn};
-}
 
 Jump some(Dice& dice, double size, const Jump& drift = {}) {
     const auto part = [&](double towards) { return size * (towards + dice.between(-1, 1)); };
@@ -68,12 +58,13 @@ Jump some(Dice& dice, double size, const Jump& drift = {}) {
 TEST_CASE("cyclic: pulled open, or sheared under constant normal stress, a joint follows the paper's law to 1e-6") {
     JointProperties smooth = lossy(); // friction softens, too
     smooth.residualFriction = 0.3;
-    for (const auto& p : {cyclic(), lossy(), smooth})
+    for (const auto& [p, k] : {std::pair(cyclic(), own(cyclic())), std::pair(lossy(), own(lossy())),
+                               std::pair(lossy(), lumped(lossy())), std::pair(smooth, own(smooth))})
         for (double sigma : {0.0, -0.1e6, -0.5e6, 0.05e6}) {
             const bool pulled = sigma > 0;
-            Path path(p);
-            PathOf<PiecewiseLaw> paper(p);
-            if (!pulled) path.press(sigma), paper.move({sigma / p.normalStiffness, {}}, 10);
+            Path path(p, k);
+            PathOf<PiecewiseLaw> paper(p, k);
+            if (!pulled) path.press(sigma), paper.press(sigma);
             double off = 0, size = pulled ? p.tensileStrength : p.cohesion - sigma * p.friction;
             for (double end : {2e-6, 2e-4, 8e-3})
                 for (int i = 0; i < 3000; ++i) {
@@ -106,31 +97,6 @@ TEST_CASE("cyclic: closed, a joint follows the compression curve within 0.5 % of
         }
 }
 
-TEST_CASE("cyclic: lumped units change the elastic part only") {
-    // Under tension and under shear at constant stress every point of the softening curve moves by its own elastic
-    // part, so the work without the elastic triangle is that of the joint alone.
-    const auto p = lossy();
-    const double sigma = -0.5e6, peak = 0.11e6 + 0.43 * 0.5e6;
-    Path single(p), series(p, lumped(p));
-    single.move({5e-3, {}}, 100000), series.move({5e-3, {}}, 100000);
-    CHECK(single.work == within(16, 0.005));
-    CHECK(series.work == within(single.work, 1e-3));
-
-    Path slid(p), slidSeries(p, lumped(p));
-    slid.press(sigma), slidSeries.press(sigma);
-    double at = 0, atSeries = 0;
-    for (double slide : {2e-4, 2e-3, 8e-3}) { // compare stresses at the same own slide
-        const double stretch = 1 / slidSeries.k.shear - 1 / slid.k.shear;
-        slid.move({0, {slide - at, 0}}, 4000);
-        at = slide;
-        const double goal = slide + stretch * slid.state.shearStress.a;
-        slidSeries.move({0, {goal - atSeries, 0}}, 4000);
-        atSeries = goal;
-        CHECK(slidSeries.state.shearStress.a == within(slid.state.shearStress.a, 1e-6));
-        CHECK(slid.state.shearStress.a < peak);
-    }
-}
-
 TEST_CASE("in both laws ten thousand steps or ten to the same end of a monotonic path give the same stress") {
     const auto same = [](const auto& start, double sigma, const Jump& then) {
         auto few = start, many = start;
@@ -157,16 +123,8 @@ TEST_CASE("in both laws ten thousand steps or ten to the same end of a monotonic
 
 // ---- unloading ------------------------------------------------------------------------------------------------------
 
-TEST_CASE("cyclic: a crack unloads to the origin, and a joint that has slipped with (1 - omega) ks") {
+TEST_CASE("cyclic: a joint that has slipped unloads with (1 - omega) ks") {
     const auto p = lossy();
-    Path open(p);
-    open.move({60e-6, {}}, 1000);
-    const double secant = open.state.normalStress / open.state.opening;
-    open.move({-30e-6, {}}, 10);
-    CHECK(open.state.normalStress == within(secant * 30e-6, 1e-9));
-    open.move({-31e-6, {}}, 1);
-    CHECK(open.state.normalStress == within(-1e-6 * p.normalStiffness, 1e-6));
-
     for (const auto& k : {own(p), lumped(p)}) {
         Path slid(p, k);
         slid.press(-0.5e6);
@@ -265,8 +223,7 @@ TEST_CASE("cyclic: under changing normal stress the cohesion softens by what is 
     double taken = 0, oldSlip = 0;
     const int steps = 400000;
     for (int i = 1; i <= steps; ++i) {
-        const double sigma = -0.5e6 * (1 + std::sin(2 * M_PI * i / 2000));
-        path.step({sigma / p.normalStiffness - elasticOpening(path.state), {0.04 / steps, 0}});
+        path.slideUnder(-0.5e6 * (1 + std::sin(2 * M_PI * i / 2000)), {0.04 / steps, 0}, 1);
         const double slip = path.state.slip;
         taken += (path.state.shearStress.a + 0.43 * path.state.normalStress) * (slip - oldSlip);
         oldSlip = slip;
@@ -285,7 +242,7 @@ TEST_CASE("cyclic: at the tip of the Coulomb cone a slide counts over a thousand
         REQUIRE(path.state.normalStress == within(p.tensileStrength, 1e-12));
         const double stress = share * 1e-3 * p.cohesion; // trial stress of the slide
         path.step({0, {stress / p.shearStiffness, 0}});
-        CHECK(path.state.shearSoftening == doctest::Approx(share).epsilon(1e-6).scale(0));
+        CHECK(path.state.shearSoftening == within(share, 1e-6));
         CHECK(path.state.shearDamage < 1);
     }
 }
@@ -301,7 +258,7 @@ TEST_CASE("cyclic: an open joint carries no residual cohesion beyond cr/kn, and 
     CHECK(length(path.state.shearStress) == 0);
     const double gone = 0.05e6 / p.normalStiffness;
     for (double share : {1.0, 0.6, 0.3, 0.0}) {
-        path.move({gone * share - elasticOpening(path.state), {}}, 1);
+        path.move({gone * share - path.elasticOpening(), {}}, 1);
         path.move({0, {1e-4, 0}}, 100);
         CHECK(path.state.shearStress.a == doctest::Approx(0.05e6 * (1 - share)).epsilon(1e-6).scale(1e3));
     }
@@ -313,11 +270,8 @@ TEST_CASE("cyclic: a joint rises as it slides away and comes down as it slides b
     const auto p = dilatant();
     Path path(p);
     double atA = 0, atB = 0;
-    const auto slideTo = [&](double a, double b, int steps) { // under constant stress, so that it may rise
-        for (int i = 0; i < steps; ++i) {
-            const double rise = -0.5e6 / p.normalStiffness - elasticOpening(path.state);
-            path.step({rise, {(a - atA) / steps, (b - atB) / steps}});
-        }
+    const auto slideTo = [&](double a, double b, int steps) {
+        path.slideUnder(-0.5e6, {a - atA, b - atB}, steps);
         atA = a, atB = b;
     };
     path.press(-0.5e6);
@@ -340,13 +294,12 @@ TEST_CASE("cyclic: dilatancy that has died away with slip settles less than it r
     path.press(-0.5e6);
     double lowest = 1, highest = 0, atStart = 0;
     for (int cycle = 0; cycle < 6; ++cycle)
-        for (double direction : {1.0, -1.0})
-            for (int i = 0; i < 2000; ++i) {
-                path.step({-0.5e6 / p.normalStiffness - elasticOpening(path.state), {direction * 0.5e-3 / 2000, 0}});
-                lowest = std::min(lowest, path.state.dilation);
-                highest = std::max(highest, path.state.dilation);
+        for (double slide : {0.5e-3, -0.5e-3})
+            path.slideUnder(-0.5e6, {slide, 0}, 2000, [&] {
                 atStart = path.state.dilation;
-            }
+                lowest = std::min(lowest, atStart);
+                highest = std::max(highest, atStart);
+            });
     CHECK(lowest >= 0);
     CHECK(atStart > 0);
     CHECK(atStart < highest);
@@ -359,13 +312,12 @@ TEST_CASE("cyclic: on the way back a joint settles until it touches, and never p
     p.cap = false;
     Path path(p);
     path.press(-1e6);
-    for (int i = 0; i < 1000; ++i)
-        path.step({-1e6 / p.normalStiffness - elasticOpening(path.state), {1e-6, 0}});
+    path.slideUnder(-1e6, {1e-3, 0}, 1000);
     path.press(-1e3);
     path.step({0, {-1e-3, 0}}); // in one step, more than enough to come down by far more than it is closed
     CHECK(path.state.normalStress <= 0);
     CHECK(path.state.dilation >= 0);
-    CHECK(elasticOpening(path.state) <= 1e-15);
+    CHECK(path.elasticOpening() <= 1e-15);
 }
 
 TEST_CASE("cyclic: sliding out pressed and back open does not lift a dry joint step by step") {
@@ -374,8 +326,7 @@ TEST_CASE("cyclic: sliding out pressed and back open does not lift a dry joint s
     double first = 0;
     for (int cycle = 0; cycle < 5; ++cycle) {
         path.press(-0.1e6);
-        for (int i = 0; i < 100; ++i)
-            path.step({-0.1e6 / p.normalStiffness - elasticOpening(path.state), {1e-5, 0}});
+        path.slideUnder(-0.1e6, {1e-3, 0}, 100);
         if (cycle == 0) first = path.state.dilation;
         path.move({2e-3, {}}, 10);
         path.move({0, {-1e-3, 0}}, 100);
@@ -448,6 +399,7 @@ TEST_CASE("cyclic: a dry joint closes on its curve and gives back what it stored
         });
         CHECK(off < 1e-9);
         CHECK(path.work == within(path.stored(), 1e-6));
+        CHECK(path.lost() == 0);
         path.step({-0.5e-3, {}}); // far beyond the closure limit in one step
         CHECK(path.state.normalStress == doctest::Approx(-curve(0.8e-3 + path.state.normalStress * stretch)));
         path.step({0.5e-3, {}});
@@ -476,7 +428,7 @@ TEST_CASE("cyclic: crushing on a closing curve keeps stress and closure together
 // ---- whatever the path ----------------------------------------------------------------------------------------------
 
 TEST_CASE_TEMPLATE("a turned path gives the turned answer", LawType, PiecewiseLaw, CyclicLaw) {
-    Dice dice{std::mt19937_64(5)};
+    Dice dice(5);
     const double c = std::cos(1), s = std::sin(1);
     const auto turned = [&](const Shear& v) { return Shear{c * v.a - s * v.b, s * v.a + c * v.b}; };
     for (int set = 0; set < 100; ++set) {
@@ -501,7 +453,7 @@ TEST_CASE_TEMPLATE("on random steps no yield surface is passed, nothing heals, a
     constexpr bool cyclic = std::is_same_v<LawType, CyclicLaw>;
     std::set<std::string> mayFall{"opening", "shearStressA", "shearStressB", "plasticSlipA", "plasticSlipB"};
     if (cyclic) mayFall.insert("dilation");
-    Dice dice{std::mt19937_64(20261121)};
+    Dice dice(20261121);
     int regimes[4] = {};
     for (int set = 0; set < (cyclic ? 300 : 500); ++set) {
         const auto joint = drawn<LawType>(dice);
@@ -532,39 +484,15 @@ TEST_CASE_TEMPLATE("on random steps no yield surface is passed, nothing heals, a
             if (!fine) FAIL("set " << set << ", step " << i);
             ++regimes[int(s.regime)];
         }
-        if (p.initialClosingStiffness > 0) continue; // where the trapezoid errs: see the next test
+        if (p.initialClosingStiffness > 0) continue; // on a curve the trapezoidal rule errs
         CHECK(std::abs(path.work - path.stored() - path.lost()) <= 1e-9 * work);
     }
     for (int count : regimes)
         CHECK(count > 1000);
 }
 
-TEST_CASE("cyclic: a joint that closes on a curve stores the area under it and loses none") {
-    JointProperties p = dry();
-    p.cap = false;
-    p.initialClosingStiffness = 0.1 * p.normalStiffness;
-    p.closureLimit = 1e-5;
-    for (const auto& k : {own(p), lumped(p)}) {
-        double before = 0;
-        for (int steps : {100, 1000}) {
-            Path path(p, k);
-            for (int i = 0; i < steps; ++i)
-                path.step({-3e-5 / steps, {}});
-            CHECK(path.lost() == 0);
-            CHECK(path.stored() > 0);
-            const double error = std::abs(path.work / path.stored() - 1); // of the trapezoid
-            CHECK(error < 20.0 / (steps * steps));
-            if (before > 0) CHECK(error < 0.05 * before);
-            before = error;
-            for (int i = 0; i < steps; ++i)
-                path.step({3e-5 / steps, {}});
-            CHECK(std::abs(path.state.normalStress) < 1e-6);
-        }
-    }
-}
-
 TEST_CASE("cyclic: a small change of the jump changes the stress by a bounded stiffness times it, in any state") {
-    Dice dice{std::mt19937_64(3)};
+    Dice dice(3);
     int yielding = 0;
     for (int set = 0; set < 200; ++set) {
         const auto joint = DrawnJoint::of(dice);
@@ -576,7 +504,7 @@ TEST_CASE("cyclic: a small change of the jump changes the stress by a bounded st
         for (int i = 0; i < 400; ++i) {
             path.step(some(dice, joint.reach * dice.logarithmic(1e-3, 0.1)));
             Path probe = path;
-            const double w = elasticOpening(probe.state);
+            const double w = probe.elasticOpening();
             if (i % 3 == 1) probe.step({-w, {}});                             // to contact
             if (i % 3 == 2) probe.step({probe.state.largestOpening - w, {}}); // to the largest opening
             const auto before = probe.state;
@@ -595,7 +523,7 @@ TEST_CASE("cyclic: a small change of the jump changes the stress by a bounded st
 TEST_CASE("cyclic: steps small against the elastic displacements never dissipate less than -1e-4 kn h²") {
     // Excepted are those that the trapezoidal rule cannot measure: steps across contact, steps that are not small
     // against the strength of slip over ks, and the curve of a dry joint, whose tangent changes within a step.
-    Dice dice{std::mt19937_64(17)};
+    Dice dice(17);
     int looked = 0, yielding = 0;
     for (int set = 0; set < 150; ++set) {
         auto joint = DrawnJoint::of(dice);
@@ -606,12 +534,12 @@ TEST_CASE("cyclic: steps small against the elastic displacements never dissipate
         Jump drift;
         for (int i = 0; i < 3000; ++i) {
             if (i % 60 == 0) drift = some(dice, dice.happens(0.2) ? 60 : 3);
-            const auto old = path.state;
+            const Path old = path;
             const Jump jump = some(dice, 0.3 * step, drift);
             const double lost = path.step(jump);
             const double h2 = jump.opening * jump.opening + jump.slide.a * jump.slide.a + jump.slide.b * jump.slide.b;
-            const bool across = (elasticOpening(old) > 0) != (elasticOpening(path.state) > 0);
-            const double shear = std::min(length(old.shearStress), length(path.state.shearStress));
+            const bool across = (old.elasticOpening() > 0) != (path.elasticOpening() > 0);
+            const double shear = std::min(length(old.state.shearStress), length(path.state.shearStress));
             const bool small = shear > 30 * joint.stiffness.shear * std::sqrt(h2) || length(jump.slide) == 0;
             if (across || !small) continue;
             ++looked;
@@ -626,7 +554,7 @@ TEST_CASE("cyclic: steps small against the elastic displacements never dissipate
 }
 
 TEST_CASE("cyclic: no closed path that hill climbing finds gives work back") {
-    Chance chance{std::mt19937_64(41)}; // validation/stability/closed_cycles.cpp searches for longer
+    Chance chance(41); // validation/stability/closed_cycles.cpp searches for longer
     for (int set = 0; set < 12; ++set) {
         const auto joint = DrawnJoint::of(chance);
         const auto found = climb(chance, joint, 1, 120, 60, 16);

@@ -9,7 +9,7 @@ int main(int count, char** arguments) {
     using namespace masonry;
     using Clock = std::chrono::steady_clock;
     const double seconds = count > 1 ? std::atof(arguments[1]) : 60;
-    Chance chance{std::mt19937_64(count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1)};
+    Chance chance(count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
     const auto start = Clock::now();
     double coarse = HUGE_VAL;
     double fine = HUGE_VAL;
