@@ -87,20 +87,13 @@ struct JointFromPython {
 };
 
 py::tuple criticalTimeStep() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    const double limit = timeStepLimit(store, true);
-    const auto [id1, id2] = limitingBodies(store);
+    const StillScene scene;
+    const double limit = timeStepLimit(*scene, true);
+    const auto [id1, id2] = limitingBodies(*scene);
     return py::make_tuple(limit, id1, id2);
 }
 
-double presentLimit() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    return timeStepLimit(store, true);
-}
+double presentLimit() { return timeStepLimit(*StillScene(), true); }
 
 // How many threads may be used, and what steps took on them.
 py::list threads() {
@@ -130,10 +123,7 @@ void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
 py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
 
 void connected() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    store.connected();
+    StillScene()->connected();
     giveMemoryBack();
 }
 
@@ -169,31 +159,15 @@ static void registerAll() {
     Sequence<shared_ptr<MasonryJoint>, JointToPython, JointFromPython>::enroll();
 
     std::vector<std::string> names;
-    enroll<MasonryMat>(names);
-    enroll<MasonryBlock>(names);
-    enroll<MasonryJoint>(names);
-    enroll<MasonryJointGeom>(names);
-    enroll<MasonryJointPhys>(names);
-    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>(names);
-    if (host::has("Polyhedra")) {
-        enroll<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom>(names);
-        enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
-    }
-    enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    enroll<MasonryMat, MasonryBlock, MasonryJoint, MasonryJointGeom, MasonryJointPhys>(names);
+    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    if (host::has("Polyhedra"))
+        enroll<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom, Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     for (const auto enrolment : enrolmentsOfFunctors())
         enrolment(names);
-    enroll<Gl1_MasonryBlock>(names);
-    enroll<Gl1_MasonryJointPhys>(names);
-    enroll<GlExtra_MasonryLegend>(names);
-    enroll<MasonryZones>(names);
-    enroll<MasonryJointLoop>(names);
-    enroll<MasonryTies>(names);
-    enroll<MasonrySprings>(names);
-    enroll<MasonryContacts>(names);
-    enroll<MasonryLoad>(names);
-    enroll<MasonryEnergy>(names);
-    enroll<MasonryIntegrator>(names);
-    enroll<MasonryVtkRecorder>(names);
+    enroll<Gl1_MasonryBlock, Gl1_MasonryJointPhys, GlExtra_MasonryLegend>(names);
+    enroll<MasonryZones, MasonryJointLoop, MasonryTies, MasonrySprings, MasonryContacts, MasonryLoad, MasonryEnergy,
+           MasonryIntegrator, MasonryVtkRecorder>(names);
     Singleton<yade::Omega>::instance().buildDynlibDatabase(names);
     yade::OpenGLRenderer::initDone = false;
 

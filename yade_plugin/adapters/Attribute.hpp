@@ -181,6 +181,17 @@ public:
     }
 };
 
+// An attribute of which all objects of the class have the same value.
+template <class T> class SharedAttribute final : public AttributeOf<T> {
+    T* const shared_;
+
+public:
+    SharedAttribute(const char* name, T* shared, const Property& property)
+        : AttributeOf<T>(name, property, Plain), shared_(shared) {}
+    T get(void*) const override { return *shared_; }
+    void put(void*, const T& value) const override { *shared_ = value; }
+};
+
 // State that Python does not see, and whose numbers a function of the class visits.
 template <class Class, class Owner> class StateAttribute final : public AttributeOf<std::vector<double>> {
     void (Owner::*const visit_)(StateNumbers&);
@@ -253,6 +264,9 @@ private:
         void operator()(const char* name, const Computed<Owner, T>& functions, const Property& property,
                         int flags = Plain) const {
             all.push_back(std::make_unique<ComputedAttribute<Class, Owner, T>>(name, functions, property, flags));
+        }
+        template <class T> void operator()(const char* name, T* shared, const Property& property) const {
+            all.push_back(std::make_unique<SharedAttribute<T>>(name, shared, property));
         }
         template <class Owner>
         void operator()(const char* name, void (Owner::*visit)(StateNumbers&), const Property& property) const {

@@ -32,17 +32,17 @@ double gapAlong(const ContactBlock& one, const ContactBlock& other, const Relati
     length = 1;
     const auto gap = [&](const Vector& d, double ofOne, double ofOther) { return d.dot(pose.place) - ofOne - ofOther; };
     if (axis < faces) {
-        const auto& face = one.faces[std::size_t(axis)];
+        const auto& face = one.faces[axis];
         return gap(face.normal, face.offset, reachAlong(other, -(pose.turn.transpose() * face.normal)));
     }
     if (axis < all) {
-        const auto& face = other.faces[std::size_t(axis - faces)];
+        const auto& face = other.faces[axis - faces];
         const Vector d = -(pose.turn * face.normal);
         return gap(d, reachAlong(one, d), face.offset);
     }
     const int others = int(other.edges.size());
     if (pair >= int(one.edges.size()) * others) return -HUGE_VAL;
-    const Vector d = one.edges[std::size_t(pair / others)].cross(pose.turn * other.edges[std::size_t(pair % others)]);
+    const Vector d = one.edges[pair / others].cross(pose.turn * other.edges[pair % others]);
     if (d.squaredNorm() < leastAxis) return -HUGE_VAL;
     length = d.norm();
     const Vector back = pose.turn.transpose() * d;
@@ -78,33 +78,33 @@ void OverlapFinder::place(const ContactBlock& one, const ContactBlock& other, co
     one_.least = other_.least = HUGE_VAL;
     tolerance_ = tiny * (one.radius + other.radius);
     for (int i = 0; i < one.cornerCount(); ++i)
-        one_.corners[std::size_t(i)] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
+        one_.corners[i] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
     for (int f = 0; f < one.faceCount(); ++f) {
-        const auto& face = one.faces[std::size_t(f)];
-        one_.planes[std::size_t(f)] = {face.normal[0], face.normal[1], face.normal[2], face.offset};
+        const auto& face = one.faces[f];
+        one_.planes[f] = {face.normal[0], face.normal[1], face.normal[2], face.offset};
     }
     const Matrix& r = pose.turn;
     const Vector& t = pose.place;
     for (int i = 0; i < other.cornerCount(); ++i) {
         const double x = other.corners[0][i], y = other.corners[1][i], z = other.corners[2][i];
-        other_.corners[std::size_t(i)] = {t[0] + (r(0, 0) * x + r(0, 1) * y + r(0, 2) * z),
-                                          t[1] + (r(1, 0) * x + r(1, 1) * y + r(1, 2) * z),
-                                          t[2] + (r(2, 0) * x + r(2, 1) * y + r(2, 2) * z)};
+        other_.corners[i] = {t[0] + (r(0, 0) * x + r(0, 1) * y + r(0, 2) * z),
+                             t[1] + (r(1, 0) * x + r(1, 1) * y + r(1, 2) * z),
+                             t[2] + (r(2, 0) * x + r(2, 1) * y + r(2, 2) * z)};
     }
     for (int f = 0; f < other.faceCount(); ++f) {
-        const auto& face = other.faces[std::size_t(f)];
+        const auto& face = other.faces[f];
         const double x = face.normal[0], y = face.normal[1], z = face.normal[2];
         const double a = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z, b = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z;
         const double c = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z;
-        other_.planes[std::size_t(f)] = {a, b, c, face.offset + (a * t[0] + b * t[1] + c * t[2])};
+        other_.planes[f] = {a, b, c, face.offset + (a * t[0] + b * t[1] + c * t[2])};
     }
 }
 
 // Finds the depths of all corners of a block below one face of the opposite block, and whether none is below it.
 bool OverlapFinder::separates(const Side& of, Side& from, int face) {
     const int count = from.block->cornerCount();
-    const Plane plane = of.planes[std::size_t(face)];
-    double* depths = &from.depths[std::size_t(face * count)];
+    const Plane plane = of.planes[face];
+    double* depths = &from.depths[face * count];
     const Corner* corners = from.corners.data();
     double deepest = -HUGE_VAL;
     for (int i = 0; i < count; ++i) {
@@ -128,7 +128,7 @@ bool OverlapFinder::edgesSeparate(const RelativePose& pose, int edges) const {
     for (int side = 0; side < 2; ++side) {
         const Side& s = side ? other_ : one_;
         for (int i = 0; i < s.block->cornerCount(); ++i) {
-            const auto& p = s.corners[std::size_t(i)];
+            const auto& p = s.corners[i];
             const double along = axis[0] * p.x + axis[1] * p.y + axis[2] * p.z;
             low[side] = std::min(low[side], along);
             high[side] = std::max(high[side], along);
@@ -167,7 +167,7 @@ bool OverlapFinder::cut(const Plane& plane, bool kept) {
 }
 
 int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
-    const auto& outline = of.block->faces[std::size_t(face)];
+    const auto& outline = of.block->faces[face];
     const int* numbers = of.block->outlines.data();
     const int corners = of.block->cornerCount(), planes = inside.block->faceCount();
     double bound = HUGE_VAL; // no point of the face is deeper inside the opposite block
@@ -182,8 +182,8 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
         }
         if (high <= tolerance_) return false;
         bound = std::min(bound, high);
-        least_[std::size_t(j)] = low;
-        if (low < -tolerance_) nearest_[std::size_t(cutting++)] = j;
+        least_[j] = low;
+        if (low < -tolerance_) nearest_[cutting++] = j;
         return true;
     };
     // Most faces look away, and lie outside this plane.
@@ -192,17 +192,17 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
         if (j != of.shallow && !look(j)) return 0;
     size_ = 0;
     for (int k = outline.first; k < outline.beyond; ++k)
-        corner(size_++) = of.corners[std::size_t(numbers[k])];
+        corner(size_++) = of.corners[numbers[k]];
     for (int c = 0; c < cutting; ++c)
-        if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return 0;
+        if (!cut(inside.planes[nearest_[c]], false)) return 0;
     // Which faces of the opposite block can be the nearest one: those below which some point is less deep than all
     // points are below some other face.
     // Of two that are equally deep everywhere it is the first.
     int count = 0, first = 0;
     double highest = HUGE_VAL;
     for (int j = 0; j < planes; ++j) {
-        if (least_[std::size_t(j)] > bound) continue;
-        const Plane& plane = inside.planes[std::size_t(j)];
+        if (least_[j] > bound) continue;
+        const Plane& plane = inside.planes[j];
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (int i = 0; i < size_; ++i) {
             const double depth = plane.depth(corner(i));
@@ -215,20 +215,20 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
             highest = high;
             first = count;
         }
-        least_[std::size_t(j)] = low;
-        nearest_[std::size_t(count++)] = j;
+        least_[j] = low;
+        nearest_[count++] = j;
     }
-    std::swap(nearest_[0], nearest_[std::size_t(first)]);
-    const Plane& main = inside.planes[std::size_t(nearest_[0])];
+    std::swap(nearest_[0], nearest_[first]);
+    const Plane& main = inside.planes[nearest_[0]];
     int possible = 1;
     for (int c = 1; c < count; ++c) {
-        const int j = nearest_[std::size_t(c)];
-        if (least_[std::size_t(j)] > bound) continue;
-        const Plane less = main - inside.planes[std::size_t(j)];
+        const int j = nearest_[c];
+        if (least_[j] > bound) continue;
+        const Plane less = main - inside.planes[j];
         bool some = false;
         for (int i = 0; i < size_ && !some; ++i)
             some = less.depth(corner(i)) > tolerance_;
-        if (some) nearest_[std::size_t(possible++)] = j;
+        if (some) nearest_[possible++] = j;
     }
     if (possible > 1) {
         wholeSize_ = size_;
@@ -238,14 +238,12 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
 }
 
 bool OverlapFinder::cell(const Side& inside, int number, int count) {
-    const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(number)])];
+    const Plane& nearest = inside.planes[nearest_[number]];
     size_ = wholeSize_;
     std::copy_n(whole_.begin(), wholeSize_, polygon_.begin());
     // Where a part is as deep below two faces, it belongs to the first of them.
     for (int d = 0; d < count; ++d)
-        if (d != number && !cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest,
-                                nearest_[std::size_t(number)] < nearest_[std::size_t(d)]))
-            return false;
+        if (d != number && !cut(inside.planes[nearest_[d]] - nearest, nearest_[number] < nearest_[d])) return false;
     return true;
 }
 
@@ -293,14 +291,13 @@ void OverlapFinder::addPatches(const Side& of, const Side& inside, double sign) 
     for (int f = 0; f < of.block->faceCount(); ++f) {
         const int count = clip(of, inside, f);
         if (count == 0) continue;
-        const Plane& face = of.planes[std::size_t(f)];
+        const Plane& face = of.planes[f];
         Patch patch{face.a, face.b, face.c, sign, {}};
         // The depth below the first face everywhere, then how much less deep the cells of the others are.
-        const Plane& first = inside.planes[std::size_t(nearest_[0])];
+        const Plane& first = inside.planes[nearest_[0]];
         addParts(first, face, true, patch.sums);
         for (int c = 1; c < count; ++c)
-            if (cell(inside, c, count))
-                addParts(inside.planes[std::size_t(nearest_[std::size_t(c)])] - first, face, false, patch.sums);
+            if (cell(inside, c, count)) addParts(inside.planes[nearest_[c]] - first, face, false, patch.sums);
         if (patch.sums.pressure > 0) patches_.push_back(patch);
     }
 }
@@ -388,7 +385,7 @@ double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
     const double p0 = depth.depth(polygon_[0]);
     double sum = 0;
     for (int i = 2; i < size_; ++i) {
-        const auto &s = polygon_[std::size_t(i - 1)], &t = polygon_[std::size_t(i)];
+        const auto &s = polygon_[i - 1], &t = polygon_[i];
         const double twice = normal.dot((at(s) - o).cross(at(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
         sum += twice / 12 * (p0 * p0 + p1 * p1 + p2 * p2 + p0 * p1 + p1 * p2 + p2 * p0);
     }
@@ -403,11 +400,11 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
     double sum = 0;
     std::fill(cells_.begin(), cells_.end(), false);
     for (int f = 0; f < of.block->faceCount(); ++f) {
-        const Vector outward = normalOf(of.planes[std::size_t(f)]);
+        const Vector outward = normalOf(of.planes[f]);
         const int count = clip(of, inside, f);
         for (int c = 0; c < count; ++c) {
-            cells_[std::size_t(nearest_[std::size_t(c)])] = true;
-            const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
+            cells_[nearest_[c]] = true;
+            const Plane& nearest = inside.planes[nearest_[c]];
             if (count == 1 || cell(inside, c, count))
                 sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
         }
@@ -418,23 +415,23 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
     // line if it lies outside one plane of the one block.
     const int corners = inside.block->cornerCount();
     for (int i = 0; i < faces; ++i) {
-        const auto& outline = inside.block->faces[std::size_t(i)];
+        const auto& outline = inside.block->faces[i];
         const auto outside = [&](int plane) {
             const double* depths = inside.depths.data() + plane * corners;
             for (int k = outline.first; k < outline.beyond; ++k)
-                if (depths[inside.block->outlines[std::size_t(k)]] >= -tolerance_) return false;
+                if (depths[inside.block->outlines[k]] >= -tolerance_) return false;
             return true;
         };
         bool near = true;
         for (int plane = 0; plane < bounds && near; ++plane)
             near = !outside(plane);
-        if (near) cells_[std::size_t(i)] = true;
+        if (near) cells_[i] = true;
     }
     for (int i = 0; i < faces; ++i)
         for (int j = i + 1; j < faces; ++j) {
-            if (!cells_[std::size_t(i)] || !cells_[std::size_t(j)]) continue;
-            const Plane& mine = inside.planes[std::size_t(i)];
-            const Plane wall = inside.planes[std::size_t(j)] - mine;
+            if (!cells_[i] || !cells_[j]) continue;
+            const Plane& mine = inside.planes[i];
+            const Plane wall = inside.planes[j] - mine;
             const Vector across = normalOf(wall); // from cell i to cell j the difference of depths falls along this
             const double steep = across.norm();
             if (!(steep > 0)) continue;
@@ -449,11 +446,11 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
             }
             bool some = cut(mine, true);
             for (int k = 0; k < faces && some; ++k)
-                if (k != i && k != j) some = cut(inside.planes[std::size_t(k)] - mine, true);
+                if (k != i && k != j) some = cut(inside.planes[k] - mine, true);
             for (int k = 0; k < bounds && some; ++k) {
                 // A wall in a face of the block bounds the overlap. It is counted where that face was given to the cell
                 // outside, which is cell i, the first, if the overlap lies in cell j.
-                const Plane& face = of.planes[std::size_t(k)];
+                const Plane& face = of.planes[k];
                 some = cut(face, normalOf(face).dot(across) < 0);
             }
             if (some) sum += 0.5 * steep * squareOf(mine, n);

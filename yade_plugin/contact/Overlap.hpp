@@ -87,7 +87,7 @@ private:
     // Adds integrals of a pressure over the present polygon, and those of the area if they are wanted.
     void addParts(const Plane& pressure, const Plane& face, bool area, Sums&) const;
     double squareOf(const Plane& depth, const Eigen::Vector3d& normal) const;
-    Corner& corner(int number) { return polygon_[std::size_t(number)]; }
+    Corner& corner(int number) { return polygon_[number]; }
     double depthIntegral(const Side& of, const Side& inside);
 
     Side one_, other_;

@@ -170,7 +170,7 @@ void Ties::pull(int count, Piece& p) {
 
 void Ties::scatter(yade::ForceContainer::Sums sums, const Piece& p, int first, int count) const {
     for (int i = 0; i < count; ++i) {
-        const int one = bodies1[std::size_t(first + i)], other = bodies2[std::size_t(first + i)];
+        const int one = bodies1[first + i], other = bodies2[first + i];
         const Vector3r pull(p.pull[0][i], p.pull[1][i], p.pull[2][i]);
         if (one != ground) {
             sums.forces[one] += pull;

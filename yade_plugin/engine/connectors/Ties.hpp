@@ -30,7 +30,7 @@ public:
 
     std::vector<std::string> problems() const;
     void act(SceneContents&) override;
-    Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[std::size_t(tie)]); }
+    Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[tie]); }
     Vector3r rotationalStiffnessOf(int) const override { return Vector3r::Zero(); }
     View view(const SceneContents&, int tie) const override;
     bool isBar() const override { return true; }

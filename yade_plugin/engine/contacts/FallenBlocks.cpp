@@ -39,7 +39,7 @@ void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& l
         if (fall.fell >= 0) continue;
         const auto& s = contents.bodies.state(body);
         const bool turned = std::abs((s.refOri.conjugate() * s.ori).w()) < std::cos(0.5 * turn);
-        if (turned || (s.pos - s.refPos).norm() > travel * diameters[std::size_t(body)]) fall.fell = now;
+        if (turned || (s.pos - s.refPos).norm() > travel * diameters[body]) fall.fell = now;
     }
 }
 

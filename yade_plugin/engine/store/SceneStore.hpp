@@ -4,6 +4,7 @@
 #pragma once
 #include "RunEnded.hpp"
 #include "engine/bodies/Load.hpp"
+#include "engine/bodies/StepLock.hpp"
 #include "engine/joints/SceneContents.hpp"
 #include <map>
 #include <memory>
@@ -101,6 +102,18 @@ private:
     long openedStep_ = -1;                     // step that was opened last
     std::size_t place_ = 0;                    // in the list of engines, of ours that found it open last
     std::vector<const yade::Body*> connected_; // the bodies at connected()
+};
+
+// The present scene, up to date and without a step, while this exists: for functions of Python.
+class StillScene {
+public:
+    SceneStore* operator->() const { return &store_; }
+    SceneStore& operator*() const { return store_; }
+    explicit StillScene(SceneStore::ScanScope scope = SceneStore::ScanScope::Everything) { store_.update(scope); }
+
+private:
+    const BetweenSteps still_;
+    SceneStore& store_ = SceneStore::present();
 };
 
 } // namespace masonry
