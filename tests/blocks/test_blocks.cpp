@@ -540,9 +540,8 @@ TEST_CASE("combined damping of a node takes nothing of a growing force, half of 
             for (std::size_t row = 0; row < rows; ++row)
                 for (int lane = 0; lane < lanes; ++lane)
                     v[row].lane[lane] = velocity, f[row].lane[lane] = force, last[row].lane[lane] = before;
-            NodeSums sums;
-            moveBlocks(matrix, {dt, alpha, {0, 0, 0}, combined, {false, false, false}}, everyLane(), u.data(), v.data(),
-                       f.data(), last.data(), sums);
+            LaneUnits units{matrix, everyLane(), u.data(), v.data(), f.data(), last.data(), {}, {}};
+            moveBlocks({dt, alpha, {0, 0, 0}, combined, {false, false, false}}, units);
             const double taken = alpha * std::abs(force) * (combined ? share : 1);
             double first = 0, second = 0; // energy taken with the velocities before and after the step [J]
             for (std::size_t row = 0; row < rows; ++row)
@@ -552,8 +551,8 @@ TEST_CASE("combined damping of a node takes nothing of a growing force, half of 
                 first += 0.5 * dt * taken * velocity;
                 second += 0.5 * dt * taken * v[row].lane[0];
             }
-            CHECK(sums.damping.lane[0] == within(first, 1e-9));
-            CHECK(sums.pending.lane[0] == within(second, 1e-9));
+            CHECK(units.sums.damping.lane[0] == within(first, 1e-9));
+            CHECK(units.sums.pending.lane[0] == within(second, 1e-9));
         }
 }
 
@@ -750,11 +749,12 @@ TEST_CASE("every instruction set moves blocks and plane units to the same bits")
             auto last = std::vector<Row>(start.begin() + 2 * rows, start.end());
             std::vector<Row> f(rows, Row{}), scratch(2 * rows);
             Row moments[3]{}, rotation[9], energy;
-            NodeSums sums;
+            LaneUnits units{matrix, everyLane(), u.data(), v.data(), f.data(), last.data(), {}, {}};
+            const auto& sums = units.sums;
             for (int step = 0; step < 20; ++step) {
                 moments[1].lane[2] = step;
                 addForces(matrix, u.data(), moments, f.data(), rotation, &energy, scratch.data());
-                move(matrix, motion, everyLane(), u.data(), v.data(), f.data(), last.data(), sums);
+                move(motion, units);
             }
             std::vector<double> all;
             for (const auto* part : {&u, &v, &last})
@@ -787,7 +787,7 @@ struct Scaling {
     Point apart = Point(0.12, 0, 0.01); // from unit to unit [m]
     std::vector<std::vector<Row>> u, v, f, last;
     std::vector<Row> scratch;
-    std::vector<ScaledUnits> members;
+    std::vector<LaneUnits> members;
 
     Scaling(double s, std::vector<const BlockElasticity*> all, bool isWhole, std::mt19937& dice)
         : scaling(s), units(all), whole(isWhole), plane(all[0]->mesh().across >= 0) {

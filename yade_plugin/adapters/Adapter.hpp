@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the classes of this plugin that YADE sees have in common. Each class lists its attributes once, and this list
-// serves Python, dict(), saving, checkpoints, the check of values and the documentation.
+// What the classes of this plugin that YADE sees have in common. Each lists its attributes once, for Python, dict(),
+// saving, checkpoints, the check of values and the documentation.
 //
-// A class `T : Adapter<T, HostBase>` defines `className`, `baseName`, `doc` and
+// A class `T : Adapter<T, HostBase>` begins with MASONRY_CLASS or MASONRY_DISPATCHED, and defines `doc` and
 //     template <class Visit> static void attributes(Visit&& visit) {
 //         visit("young", &T::young, number("Pa", "Young's modulus").above(0));
 //     }
 // An attribute whose value lives elsewhere, as the state of a joint does, is given by two functions in place of a
-// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`. State that Python does not see is given by one
-// function that visits its numbers: `visit("record", &T::visitRecord, ...)`, see common/StateNumbers.hpp. A class may
-// also define
+// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`; one that all objects share by a static member;
+// state that Python does not see by a function that visits its numbers: `visit("record", &T::visitRecord, ...)`, see
+// common/StateNumbers.hpp. A class may also define
 //     void postLoad()                               checks and prepares the object after attributes were changed
 //     std::vector<std::string> problems()           says what is wrong beyond the bounds of single attributes
 //     static constexpr ClassRole declares           is its role, which an engine must have

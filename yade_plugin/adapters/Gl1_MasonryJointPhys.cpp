@@ -25,8 +25,8 @@ struct Drawing {
     bool drawn = false;
 };
 
-// All joints of a scene at one time. YADE asks for one joint after the other while the run may go on in the background.
-// So the state of all is read at once, between two steps, when a joint is asked for a second time.
+// All joints of a scene at one time. YADE asks for one after the other while the run may go on in the background: the
+// state of all is read at once, between two steps, when a joint is asked for a second time.
 class Picture {
 public:
     Drawing* of(const yade::IPhys* phys) {

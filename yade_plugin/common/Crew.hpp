@@ -3,9 +3,9 @@
 //
 // A step has a handful of loops of some ten microseconds each, so a thread must begin within a microsecond, and must
 // not keep the others waiting when it has no core. Each thread has a share of the loop, the same part in every step,
-// whose numbers are then in its cache. Who has finished takes pieces of the others' shares. So the caller can do the
-// whole loop alone if no other thread comes in time, and it waits for pieces alone that another thread has begun.
-// Threads with nothing to do look for work for a short while, and then sleep.
+// whose numbers are then in its cache, and then takes pieces of the others' shares. So the caller can do the whole loop
+// alone if no other thread comes in time, and waits only for pieces that another thread has begun. Threads with nothing
+// to do look for work for a short while, and then sleep.
 #pragma once
 #include <atomic>
 #include <condition_variable>

@@ -16,6 +16,9 @@ constexpr double tiny = 1e-14;
 constexpr int mostEdgePairs = 400;
 constexpr double leastAxis = 1e-12; // square of the sine between two edges below which they count as parallel
 
+PlainVector plain(const Vector& v) { return {v[0], v[1], v[2]}; }
+Vector eigen(const PlainVector& v) { return {v.x, v.y, v.z}; }
+
 // How far the corners of a block reach along a direction, in its own axes [m times the length of the direction].
 double reachAlong(const ContactBlock& block, const Vector& direction) {
     const double *x = block.corners[0].data(), *y = block.corners[1].data(), *z = block.corners[2].data();
@@ -78,25 +81,17 @@ void OverlapFinder::place(const ContactBlock& one, const ContactBlock& other, co
     one_.least = other_.least = HUGE_VAL;
     tolerance_ = tiny * (one.radius + other.radius);
     for (int i = 0; i < one.cornerCount(); ++i)
-        one_.corners[i] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
-    for (int f = 0; f < one.faceCount(); ++f) {
-        const auto& face = one.faces[f];
-        one_.planes[f] = {face.normal[0], face.normal[1], face.normal[2], face.offset};
-    }
-    const Matrix& r = pose.turn;
-    const Vector& t = pose.place;
-    for (int i = 0; i < other.cornerCount(); ++i) {
-        const double x = other.corners[0][i], y = other.corners[1][i], z = other.corners[2][i];
-        other_.corners[i] = {t[0] + (r(0, 0) * x + r(0, 1) * y + r(0, 2) * z),
-                             t[1] + (r(1, 0) * x + r(1, 1) * y + r(1, 2) * z),
-                             t[2] + (r(2, 0) * x + r(2, 1) * y + r(2, 2) * z)};
-    }
+        one_.corners[i] = vectorAt(one.corners, i);
+    for (int f = 0; f < one.faceCount(); ++f)
+        one_.planes[f] = {plain(one.faces[f].normal), one.faces[f].offset};
+    const PlainVector r[3] = {plain(pose.turn.row(0)), plain(pose.turn.row(1)), plain(pose.turn.row(2))};
+    const PlainVector place = plain(pose.place);
+    const auto turned = [&](const PlainVector& v) { return PlainVector{dot(r[0], v), dot(r[1], v), dot(r[2], v)}; };
+    for (int i = 0; i < other.cornerCount(); ++i)
+        other_.corners[i] = place + turned(vectorAt(other.corners, i));
     for (int f = 0; f < other.faceCount(); ++f) {
-        const auto& face = other.faces[f];
-        const double x = face.normal[0], y = face.normal[1], z = face.normal[2];
-        const double a = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z, b = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z;
-        const double c = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z;
-        other_.planes[f] = {a, b, c, face.offset + (a * t[0] + b * t[1] + c * t[2])};
+        const PlainVector normal = turned(plain(other.faces[f].normal));
+        other_.planes[f] = {normal, other.faces[f].offset + dot(normal, place)};
     }
 }
 
@@ -124,12 +119,12 @@ bool OverlapFinder::edgesSeparate(const RelativePose& pose, int edges) const {
     const Vector axis = one_.block->edges[std::size_t(edges) / others.size()].cross(
         pose.turn * others[std::size_t(edges) % others.size()]);
     if (axis.squaredNorm() < leastAxis) return false;
+    const PlainVector direction = plain(axis);
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int side = 0; side < 2; ++side) {
         const Side& s = side ? other_ : one_;
         for (int i = 0; i < s.block->cornerCount(); ++i) {
-            const auto& p = s.corners[i];
-            const double along = axis[0] * p.x + axis[1] * p.y + axis[2] * p.z;
+            const double along = dot(direction, s.corners[i]);
             low[side] = std::min(low[side], along);
             high[side] = std::max(high[side], along);
         }
@@ -158,7 +153,7 @@ bool OverlapFinder::cut(const Plane& plane, bool kept) {
             // From the inner corner, so that neighbouring parts have the same point.
             const Corner &in = s > 0 ? from[i] : from[next], &out = s > 0 ? from[next] : from[i];
             const double share = (s > 0 ? s : t) / (s > 0 ? s - t : t - s);
-            to[count++] = {in.x + share * (out.x - in.x), in.y + share * (out.y - in.y), in.z + share * (out.z - in.z)};
+            to[count++] = in + share * (out - in);
         }
     }
     polygon_.swap(spare_);
@@ -252,38 +247,26 @@ bool OverlapFinder::cell(const Side& inside, int number, int count) {
 void OverlapFinder::addParts(const Plane& pressure, const Plane& face, bool area, Sums& sums) const {
     const Corner* p = polygon_.data();
     const Corner& o = p[0];
-    const double p0 = pressure.depth(o), oo = o.x * o.x + o.y * o.y + o.z * o.z;
-    double p1 = pressure.depth(p[1]), ss = p[1].x * p[1].x + p[1].y * p[1].y + p[1].z * p[1].z;
+    const auto next = [](const Corner& c) { return Corner{c.y, c.z, c.x}; };
+    const double p0 = pressure.depth(o), oo = dot(o, o);
+    double p1 = pressure.depth(p[1]), ss = dot(p[1], p[1]);
     for (int i = 2; i < size_; ++i) {
-        const Corner &s = p[i - 1], &t = p[i];
-        const double sx = s.x - o.x, sy = s.y - o.y, sz = s.z - o.z, tx = t.x - o.x, ty = t.y - o.y, tz = t.z - o.z;
-        const double twice = face.a * (sy * tz - sz * ty) + face.b * (sz * tx - sx * tz) + face.c * (sx * ty - sy * tx);
+        const Corner &s = p[i - 1], &t = p[i], all = o + s + t;
+        const double twice = dot(face.normal, cross(s - o, t - o));
         const double p2 = pressure.depth(t), sum = p0 + p1 + p2;
-        const double x = o.x + s.x + t.x, y = o.y + s.y + t.y, z = o.z + s.z + t.z;
         const double part = twice / 24, sumPart = part * sum;
-        const double w0 = sumPart + part * p0, w1 = sumPart + part * p1, w2 = sumPart + part * p2;
         sums.pressure += 4 * sumPart;
-        sums.px += w0 * o.x + w1 * s.x + w2 * t.x;
-        sums.py += w0 * o.y + w1 * s.y + w2 * t.y;
-        sums.pz += w0 * o.z + w1 * s.z + w2 * t.z;
-        const double tt = t.x * t.x + t.y * t.y + t.z * t.z, all = x * x + y * y + z * z;
-        const double weighted = p0 * (oo + (o.x * x + o.y * y + o.z * z)) + p1 * (ss + (s.x * x + s.y * y + s.z * z)) +
-                                p2 * (tt + (t.x * x + t.y * y + t.z * z));
-        sums.square += twice / 120 * (sum * (all + (oo + ss + tt)) + 2 * weighted);
+        sums.first = sums.first + ((sumPart + part * p0) * o + (sumPart + part * p1) * s + (sumPart + part * p2) * t);
+        const double tt = dot(t, t);
+        const double weighted = p0 * (oo + dot(o, all)) + p1 * (ss + dot(s, all)) + p2 * (tt + dot(t, all));
+        sums.square += twice / 120 * (sum * (dot(all, all) + (oo + ss + tt)) + 2 * weighted);
         p1 = p2;
         ss = tt;
         if (!area) continue;
-        const double sixth = twice / 6;
         sums.area += 0.5 * twice;
-        sums.ax += sixth * x;
-        sums.ay += sixth * y;
-        sums.az += sixth * z;
-        sums.xx += part * (x * x + (o.x * o.x + s.x * s.x + t.x * t.x));
-        sums.xy += part * (x * y + (o.x * o.y + s.x * s.y + t.x * t.y));
-        sums.xz += part * (x * z + (o.x * o.z + s.x * s.z + t.x * t.z));
-        sums.yy += part * (y * y + (o.y * o.y + s.y * s.y + t.y * t.y));
-        sums.yz += part * (y * z + (o.y * o.z + s.y * s.z + t.y * t.z));
-        sums.zz += part * (z * z + (o.z * o.z + s.z * s.z + t.z * t.z));
+        sums.firstOfArea = sums.firstOfArea + twice / 6 * all;
+        sums.squares = sums.squares + part * (all * all + (o * o + s * s + t * t));
+        sums.mixed = sums.mixed + part * (all * next(all) + (o * next(o) + s * next(s) + t * next(t)));
     }
 }
 
@@ -292,7 +275,7 @@ void OverlapFinder::addPatches(const Side& of, const Side& inside, double sign) 
         const int count = clip(of, inside, f);
         if (count == 0) continue;
         const Plane& face = of.planes[f];
-        Patch patch{face.a, face.b, face.c, sign, {}};
+        Patch patch{face.normal, sign, {}};
         // The depth below the first face everywhere, then how much less deep the cells of the others are.
         const Plane& first = inside.planes[nearest_[0]];
         addParts(first, face, true, patch.sums);
@@ -339,8 +322,7 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
     Vector force = Vector::Zero(), moment = Vector::Zero(), first = Vector::Zero();
     double pressing = 0, square = 0, touched = 0;
     for (const auto& patch : patches_) {
-        const Vector normal = patch.sign * Vector(patch.a, patch.b, patch.c);
-        const Vector p(patch.sums.px, patch.sums.py, patch.sums.pz);
+        const Vector normal = patch.sign * eigen(patch.normal), p = eigen(patch.sums.first);
         force += patch.sums.pressure * normal;
         moment += p.cross(normal);
         first += p;
@@ -366,13 +348,14 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
     found.normal = force / size;
     for (const auto& patch : patches_) {
         const auto& s = patch.sums;
-        const double cosine = patch.sign * found.normal.dot(Vector(patch.a, patch.b, patch.c));
+        const double cosine = patch.sign * found.normal.dot(eigen(patch.normal));
         if (cosine <= 0) continue;
         const double share = 0.5 * cosine;
         found.area += share * s.area;
-        found.firstMoment += share * Vector(s.ax, s.ay, s.az);
+        found.firstMoment += share * eigen(s.firstOfArea);
         Matrix second;
-        second << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+        const auto &q = s.squares, &m = s.mixed;
+        second << q.x, m.x, m.z, m.x, q.y, m.y, m.z, m.y, q.z;
         found.secondMoment += share * second;
     }
     return true;
@@ -380,13 +363,12 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
 
 // The integral of the square of a depth over the present polygon.
 double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
-    const auto at = [](const Corner& c) { return Vector(c.x, c.y, c.z); };
-    const Vector o = at(polygon_[0]);
+    const Vector o = eigen(polygon_[0]);
     const double p0 = depth.depth(polygon_[0]);
     double sum = 0;
     for (int i = 2; i < size_; ++i) {
         const auto &s = polygon_[i - 1], &t = polygon_[i];
-        const double twice = normal.dot((at(s) - o).cross(at(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
+        const double twice = normal.dot((eigen(s) - o).cross(eigen(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
         sum += twice / 12 * (p0 * p0 + p1 * p1 + p2 * p2 + p0 * p1 + p1 * p2 + p2 * p0);
     }
     return sum;
@@ -396,7 +378,7 @@ double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
 // divergence of g depth²/2 is the depth. So the cell of every nearest face has a surface integral: over what it has of
 // the surface of `of`, and over its walls to other cells.
 double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
-    const auto normalOf = [](const Plane& p) { return Vector(p.a, p.b, p.c); };
+    const auto normalOf = [](const Plane& p) { return eigen(p.normal); };
     double sum = 0;
     std::fill(cells_.begin(), cells_.end(), false);
     for (int f = 0; f < of.block->faceCount(); ++f) {
@@ -442,7 +424,7 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
             size_ = 0;
             for (const auto& [u, v] : {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)}) {
                 const Vector at = middle + wide * (u * e1 + v * e2);
-                corner(size_++) = {at[0], at[1], at[2]};
+                corner(size_++) = plain(at);
             }
             bool some = cut(mine, true);
             for (int k = 0; k < faces && some; ++k)

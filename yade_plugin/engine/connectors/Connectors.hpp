@@ -25,8 +25,8 @@ public:
     int count() const { return int(bodies1.size()); }
     // Adds the forces of all connectors to those of the present step, and counts their energies.
     virtual void act(SceneContents&) = 0;
-    // Stiffness of a connector between its ends along the global axes [N/m] and about them [N m], as far as it matters
-    // for the time step: never too small.
+    // Stiffness of a connector between its ends along the global axes [N/m] and about them [N m] for the time step:
+    // never too small.
     virtual Vector3r stiffnessOf(int connector) const = 0;
     virtual Vector3r rotationalStiffnessOf(int connector) const = 0;
 

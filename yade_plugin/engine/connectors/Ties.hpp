@@ -8,8 +8,6 @@ namespace masonry {
 
 class Ties : public Connectors {
 public:
-    static constexpr double never = 1e300; // as strength or breaking elongation
-
     std::vector<double> stiffness; // E A / L [N/m]
     std::vector<double> strength;  // force at which a bar yields [N]
     std::vector<double> breaking;  // elongation since the bar got its length at which it breaks [m]

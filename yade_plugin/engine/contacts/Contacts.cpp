@@ -15,10 +15,6 @@ constexpr unsigned allAxes = 63;
 
 bool isHeld(const SceneContents& contents, int body) { return contents.bodies.blockedAxes(body) == allAxes; }
 
-Vector3r columnOf(const std::vector<double>* columns, int body) {
-    return {columns[0][body], columns[1][body], columns[2][body]};
-}
-
 } // namespace
 
 std::vector<std::string> Contacts::problems() const {
@@ -67,7 +63,7 @@ void Contacts::checkBodies(const SceneContents& contents) const {
 void Contacts::prepare(const SceneContents& contents) {
     if (revision_ == contents.stiffnessRevision()) return;
     ids_ = idsOf(contents);
-    const auto count = std::size_t(contents.bodies.size());
+    const int count = contents.bodies.size();
     blocks_.assign(count, ContactBlock{});
     turns_.assign(count, Matrix3r::Identity());
     double thinnest = HUGE_VAL;
@@ -105,7 +101,7 @@ bool Contacts::moved(const SceneContents& contents) const {
     for (std::size_t i = 0; i < ids_.size(); ++i) {
         const int id = ids_[i];
         const auto& then = placed_[i];
-        const double shift = (columnOf(all.position, id) - then.position).norm();
+        const double shift = (all.placeOf(id) - then.position).norm();
         double same = 0, opposite = 0;
         for (int d = 0; d < 4; ++d) {
             same += std::pow(all.orientation[d][id] - then.orientation[d], 2);
@@ -139,7 +135,7 @@ void Contacts::findPairs(const SceneContents& contents) {
         }
         boxes.push_back(box);
         awake.push_back(isAwake(contents, id));
-        Placed placed{columnOf(all.position, id), {}};
+        Placed placed{all.placeOf(id), {}};
         for (int d = 0; d < 4; ++d)
             placed.orientation[d] = all.orientation[d][id];
         placed_.push_back(placed);
@@ -167,18 +163,17 @@ void Contacts::findPairs(const SceneContents& contents) {
 }
 
 RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
-    const auto& position = contents.bodies.position;
-    auto pose = relativePose(turns_[pair.one], columnOf(position, pair.one), turns_[pair.other],
-                             columnOf(position, pair.other));
+    auto pose = relativePose(turns_[pair.one], contents.bodies.placeOf(pair.one), turns_[pair.other],
+                             contents.bodies.placeOf(pair.other));
     pose.place += pair.gap;
     return pose;
 }
 
 ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
     const auto& all = contents.bodies;
-    return {
-        turns_[body],   columnOf(all.position, body), columnOf(all.velocity, body), columnOf(all.velocity + 3, body),
-        all.mass[body], columnOf(all.inertia, body),  all.blockedAxes(body)};
+    return {turns_[body],         all.placeOf(body), BodyColumns::row(all.velocity, body),
+            all.spinOf(body),     all.mass[body],    BodyColumns::row(all.inertia, body),
+            all.blockedAxes(body)};
 }
 
 void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
@@ -207,13 +202,8 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
-    const auto& all = contents.bodies;
-    for (int id : ids_) {
-        const auto b = std::size_t(id);
-        turns_[b] = Eigen::Quaterniond(all.orientation[0][b], all.orientation[1][b], all.orientation[2][b],
-                                       all.orientation[3][b])
-                        .toRotationMatrix();
-    }
+    for (int id : ids_)
+        turns_[id] = contents.bodies.turnOf(id).toRotationMatrix();
 }
 
 void Contacts::act(SceneContents& contents) {
@@ -261,7 +251,7 @@ bool Contacts::isAwake(const SceneContents& contents, int body) const {
 // reference place by half of the skin. Where it overlaps a block then that it has no joint with, the gap of the pair is
 // as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
 void Contacts::wake(const SceneContents& contents) {
-    std::vector<unsigned char> jointed(std::size_t(contents.bodies.size()), 0);
+    std::vector<unsigned char> jointed(contents.bodies.size(), 0);
     contents.eachJoint([&](const JointView& joint) {
         for (const auto& side : joint.geom->reference().sides)
             jointed[side.body] = 1;
@@ -270,7 +260,7 @@ void Contacts::wake(const SceneContents& contents) {
     for (int id : ids_) {
         if (awake_.count(id) || isHeld(contents, id)) continue;
         const auto& s = contents.bodies.state(id);
-        const double moved = (columnOf(contents.bodies.position, id) - s.refPos).norm();
+        const double moved = (contents.bodies.placeOf(id) - s.refPos).norm();
         const double turn = (turns_[id] - s.refOri.toRotationMatrix()).norm();
         if (!jointed[id] || moved + turn * blocks_[id].radius > 0.5 * usedSkin_) awake_.insert(id);
     }
@@ -386,8 +376,8 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
 void Contacts::countChanges(const SceneContents& contents) {
     const double half = 0.5 * contents.scene().dt;
     for (const auto& change : changes_)
-        conversionEnergy += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
-                                    change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
+        conversionEnergy += half * (change.force.dot(BodyColumns::row(contents.bodies.velocity, change.body)) +
+                                    change.torque.dot(contents.bodies.spinOf(change.body)));
     changes_.clear();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
-// have changed. It owns the columns in which the state of joints and rigid bodies lives.
+// The view of a scene that all engines of this plugin share: its engines, bodies and joints, read again when they have
+// changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
 #include "RunEnded.hpp"
 #include "engine/bodies/Load.hpp"
@@ -29,20 +29,18 @@ public:
         Joints, // It looks at joints only.
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
-    // groups, if the joints of the scene belong to more than one Zones.
+    // groups, if they belong to more than one Zones.
     void update(ScanScope scope = ScanScope::Everything);
     // Reads the joints again of which some were given other points: their stiffness stays in the time step.
     void pointsChanged();
     // Moves the joints that are there into common groups, while masonry.connect() makes others.
     void gather();
-    // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
-    // unjoinedBlocks().
+    // masonry.connect() calls this when all blocks have their joints; unjoinedBlocks() then reports blocks that are
+    // added later.
     void connected();
     bool isConnected() const { return !connected_.empty(); }
 
     bool gone() const { return life_.expired(); }
-    // Expires when the scene ends.
-    const boost::weak_ptr<yade::Factorable>& life() const { return life_; }
 
     // The engines of the scene that are not dead; null if there is none of a class.
     Zones* zones = nullptr;

@@ -68,7 +68,6 @@ struct LaneSums { // of lanes, so that the order of adding is the same with any 
 };
 
 // One step of joints without strength, with the stiffnesses kn and ks [Pa/m].
-void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                    double* normalStress);
+void advanceElastic(double kn, double ks, const Columns& columns, int count, const Jumps& jumps, double* normalStress);
 
 } // namespace masonry

@@ -86,8 +86,8 @@ public:
                          const double* slideB, double* normalStress) = 0;
 
     // Intact joints. As long as a joint is elastic and has never yielded, its stresses are the stiffness times its
-    // jumps, which are linear over its face, and a program need not advance its points. A law for which that holds says
-    // so here, and then answers the four questions that follow; one that does not is never asked.
+    // jumps, which are linear over its face, and its points need not be advanced. A law for which that holds says so
+    // here, and then answers the questions that follow; another is never asked them.
     virtual bool knowsIntact() const { return false; }
     // Whether nothing has yielded at a subcontact, so that its stress is the stiffness times its jump, or differs from
     // that by a stress that was given to it.
@@ -133,8 +133,8 @@ private:
     struct Release {
         void operator()(void* memory) const { std::free(memory); }
     };
-    // Zeroed memory that takes no room in the machine before it is written to: columns that the law only uses where
-    // subcontacts have yielded cost nothing where none has.
+    // Zeroed memory that takes no room in the machine before it is written to, as columns that only subcontacts which
+    // have yielded use.
     std::unique_ptr<void, Release> memory_;
 };
 
