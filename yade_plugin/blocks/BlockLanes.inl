@@ -320,7 +320,7 @@ template <class Vectors> inline Vectors weighted(Lanes a, const Vectors& one, La
 }
 
 // What the loops over the nodes of units with scaled masses need, of one part of their lanes. Each phase of ScaledStep
-// has a copy, so that the compiler sees that no node's numbers are among these.
+// has a copy: the compiler then sees that no node's numbers are among these.
 template <bool plane> struct ScaledNodes {
     static constexpr int directions = plane ? 2 : 3;
     const NodeMotion m;

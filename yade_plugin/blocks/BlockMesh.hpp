@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A convex block divided into tetrahedral zones (paper §2: deformable blocks), or, as a plane unit, into triangles of
-// its middle plane. Pure geometry.
+// its middle plane.
 #pragma once
 #include "FaceContact.hpp"
 #include <optional>

@@ -39,7 +39,7 @@ public:
 private:
     struct alignas(64) Share {
         // Three numbers in 48, 8 and 8 bits: the loop, the first portion that nobody has taken, and the end of the
-        // portions. A thread that comes late finds the number of another loop, and takes nothing.
+        // portions. A thread that comes late finds another loop, and takes nothing.
         std::atomic<std::uint64_t> next{0};
     };
 

@@ -18,7 +18,7 @@
 #define MASONRY_VECTOR_UNITS 0
 #endif
 
-// A function that is compiled into its callers, so that it uses the instruction set of a vectorised one.
+// A function that uses the instruction set of the vectorised one that calls it.
 #define MASONRY_INLINED [[gnu::always_inline]] inline
 
 // Stands before a loop whose iterations do not depend on each other, which the compiler cannot know: pointers might

@@ -13,8 +13,8 @@ struct RelativePose {
     Eigen::Vector3d place; // origin of the other block [m]
 };
 
-// What two blocks do to each other, for a stiffness of 1 Pa/m. All is in the axes of the one block. Moments are about
-// its origin.
+// What two blocks do to each other, for a stiffness of 1 Pa/m, in the axes of the one block; moments are about its
+// origin.
 struct Overlap {
     Eigen::Vector3d force;  // on the other block [m³]; the one block has the opposite
     Eigen::Vector3d moment; // on the other block about the origin of the one [m⁴]; the one block has the opposite

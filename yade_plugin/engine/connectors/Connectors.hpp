@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What connects bodies beside their joints: ties and springs, each kind in columns. An engine derives from each kind.
+// What connects bodies beside their joints: ties and springs, each kind in columns, from which an engine derives.
 #pragma once
 #include "engine/joints/SceneContents.hpp"
 

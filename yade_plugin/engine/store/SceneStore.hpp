@@ -64,8 +64,8 @@ public:
         return *static_cast<Kept*>(place.get());
     }
 
-    // Whether an engine finds the store as it must be in the present step: another engine has opened the step by
-    // update() and checkBeforeStep(), and neither engines nor joints have changed since.
+    // Whether another engine has opened the present step by update() and checkBeforeStep(), and neither engines nor
+    // joints have changed since.
     bool isOpenFor(const yade::Engine&);
     void opened() {
         openedStep_ = scene_.iter;

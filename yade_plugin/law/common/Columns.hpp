@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the states of subcontacts stand side by side in memory: a column for each quantity, so that the vector units
-// take several subcontacts at a time.
+// Where the states of subcontacts stand side by side in memory: a column for each quantity.
 #pragma once
 #include "common/Vectorised.hpp"
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// ColumnsOf with a law that also takes several subcontacts at a time, and that has columns which are used only where
+// ColumnsOf with a law that also takes several subcontacts at a time, and has columns which are used only where
 // subcontacts have yielded. Beside what ColumnsOf.hpp asks for, the law gives:
 //
 //   Column::Crushing             the first of these columns; all that come after it are used likewise

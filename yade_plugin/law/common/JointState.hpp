@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What any joint law knows of a subcontact, and what it is given and answers in a step. Opening and tension are
-// positive.
+// What any joint law knows of a subcontact, is given and answers in a step. Opening and tension are positive.
 #pragma once
 #include "Columns.hpp"
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The states of the subcontacts of joints of one kind, in columns [point][joint], as a program sees them that does not
-// know the law. What a law does with them is in ColumnsOf and ColumnsSideBySide.
+// The states of the subcontacts of joints of one kind, in columns [point][joint], for who does not know the law. What a
+// law does with them is in ColumnsOf and ColumnsSideBySide.
 #pragma once
 #include "Columns.hpp"
 #include "JointField.hpp"
@@ -59,8 +59,8 @@ public:
     Energies dissipated(int point, int joint) const; // [J/m²] so far
     virtual void setDissipated(int point, int joint, const Energies&) = 0;
 
-    // All numbers of the state of a subcontact, its regime among them, with their names. `read` shows them to a
-    // function, `write` takes those that the function leaves.
+    // All numbers of the state of a subcontact, its regime among them, with their names: `read` shows them to a
+    // function, `write` takes those that it leaves.
     virtual void read(int point, int joint, const std::function<void(const char* name, double number)>&) const = 0;
     virtual void write(int point, int joint, const std::function<void(const char* name, double& number)>&) = 0;
     void visitState(int point, int joint, StateNumbers&); // the same and what was dissipated, to save or to load
@@ -96,7 +96,7 @@ public:
     // domain is convex.
     virtual bool isConvex() const { return false; }
     // Adds 1 to `yielding` where a subcontact of an intact joint would not be well within the elastic domain under a
-    // jump; a number that is not finite is not. Without slideB all is in the plane.
+    // jump, or the jump is not finite. Without slideB all is in the plane.
     virtual void findYielding(int /*count*/, const double* /*opening*/, const double* /*slideA*/,
                               const double* /*slideB*/, Mask* /*yielding*/) const {}
     // Takes down what a subcontact that stays elastic remembers of an opening, such as the largest so far, for the

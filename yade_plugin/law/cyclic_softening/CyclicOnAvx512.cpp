@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cyclic law side by side with the vector units of AVX-512. The standard headers stand before the pragma, so that
-// their functions are not compiled for these units.
+// The cyclic law side by side with the vector units of AVX-512; see CyclicOnAvx2.cpp.
 #include "common/Vectorised.hpp"
 #if MASONRY_VECTOR_UNITS
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One step of the cyclic law for several subcontacts side by side, as many as the vector units of a processor take. A
-// file for each kind of vector units includes this header and compiles `advanceAs` for it (common/Pack.hpp); that file
-// must not compile anything else, because the linker would take it for all processors.
+// One step of the cyclic law for as many subcontacts side by side as the vector units of a processor take. A file for
+// each kind of vector units compiles `advanceAs` for it (common/Pack.hpp), and nothing else, because the linker would
+// take that for all processors.
 #pragma once
 #include "CyclicState.hpp"
 #include "CyclicStep.hpp"
