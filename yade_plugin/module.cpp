@@ -34,73 +34,59 @@ namespace {
 using namespace masonry;
 
 // Converts lists between C++ and Python for a type for which the host has no such converter.
-template <class T, class ToPython, class FromPython> struct Sequence {
-    static PyObject* convert(const std::vector<T>& values) {
+template <class Of> struct Sequence {
+    using List = std::vector<typename Of::Type>;
+    static PyObject* convert(const List& values) {
         py::list all;
         for (const auto& value : values)
-            all.append(ToPython()(value));
+            all.append(Of::toPython(value));
         return py::incref(all.ptr());
     }
     static void* convertible(PyObject* object) {
         if (!PySequence_Check(object) || PyUnicode_Check(object)) return nullptr;
         const py::object sequence{py::handle<>(py::borrowed(object))};
         for (py::ssize_t i = 0; i < py::len(sequence); ++i)
-            if (!FromPython::fits(sequence[i])) return nullptr;
+            if (!Of::fits(sequence[i])) return nullptr;
         return object;
     }
     static void construct(PyObject* object, py::converter::rvalue_from_python_stage1_data* data) {
-        void* place = reinterpret_cast<py::converter::rvalue_from_python_storage<std::vector<T>>*>(data)->storage.bytes;
-        auto* values = new (place) std::vector<T>;
+        void* place = reinterpret_cast<py::converter::rvalue_from_python_storage<List>*>(data)->storage.bytes;
+        auto* values = new (place) List;
         data->convertible = place;
         const py::object sequence{py::handle<>(py::borrowed(object))};
         for (py::ssize_t i = 0; i < py::len(sequence); ++i)
-            values->push_back(FromPython()(sequence[i]));
+            values->push_back(Of::fromPython(sequence[i]));
     }
     static void enroll() {
-        py::to_python_converter<std::vector<T>, Sequence>();
-        py::converter::registry::push_back(&convertible, &construct, py::type_id<std::vector<T>>());
+        py::to_python_converter<List, Sequence>();
+        py::converter::registry::push_back(&convertible, &construct, py::type_id<List>());
     }
 };
 
-struct RowToPython {
-    py::object operator()(const TableRow& row) const { return py::make_tuple(row.ratio, row.damage); }
-};
-struct RowFromPython {
+struct Rows {
+    using Type = TableRow;
+    static py::object toPython(const Type& row) { return py::make_tuple(row.ratio, row.damage); }
     static bool fits(const py::object& row) {
         return PySequence_Check(row.ptr()) && py::len(row) == 2 && py::extract<double>(row[0]).check() &&
                py::extract<double>(row[1]).check();
     }
-    TableRow operator()(const py::object& row) const {
-        return {py::extract<double>(row[0]), py::extract<double>(row[1])};
-    }
+    static Type fromPython(const py::object& row) { return {py::extract<double>(row[0]), py::extract<double>(row[1])}; }
 };
-struct JointToPython {
-    py::object operator()(const shared_ptr<MasonryJoint>& joint) const { return py::object(joint); }
-};
-struct JointFromPython {
-    static bool fits(const py::object& joint) {
-        return !joint.is_none() && py::extract<shared_ptr<MasonryJoint>>(joint).check();
-    }
-    shared_ptr<MasonryJoint> operator()(const py::object& joint) const {
-        return py::extract<shared_ptr<MasonryJoint>>(joint);
-    }
+struct Joints {
+    using Type = shared_ptr<MasonryJoint>;
+    static py::object toPython(const Type& joint) { return py::object(joint); }
+    static bool fits(const py::object& joint) { return !joint.is_none() && py::extract<Type>(joint).check(); }
+    static Type fromPython(const py::object& joint) { return py::extract<Type>(joint); }
 };
 
 py::tuple criticalTimeStep() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    const double limit = timeStepLimit(store, true);
-    const auto [id1, id2] = limitingBodies(store);
+    const StillScene scene;
+    const double limit = timeStepLimit(*scene, true);
+    const auto [id1, id2] = limitingBodies(*scene);
     return py::make_tuple(limit, id1, id2);
 }
 
-double presentLimit() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    return timeStepLimit(store, true);
-}
+double presentLimit() { return timeStepLimit(*StillScene(), true); }
 
 // How many threads may be used, and what steps took on them.
 py::list threads() {
@@ -130,10 +116,7 @@ void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
 py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
 
 void connected() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    store.connected();
+    StillScene()->connected();
     giveMemoryBack();
 }
 
@@ -165,35 +148,19 @@ void raiseWrong(const WrongProperties& wrong) {
 static void registerAll() {
     py::register_exception_translator<WrongProperties>(&raiseWrong);
     py::register_exception_translator<RunEnded>(&raiseEnded);
-    Sequence<TableRow, RowToPython, RowFromPython>::enroll();
-    Sequence<shared_ptr<MasonryJoint>, JointToPython, JointFromPython>::enroll();
+    Sequence<Rows>::enroll();
+    Sequence<Joints>::enroll();
 
     std::vector<std::string> names;
-    enroll<MasonryMat>(names);
-    enroll<MasonryBlock>(names);
-    enroll<MasonryJoint>(names);
-    enroll<MasonryJointGeom>(names);
-    enroll<MasonryJointPhys>(names);
-    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>(names);
-    if (host::has("Polyhedra")) {
-        enroll<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom>(names);
-        enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
-    }
-    enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    enroll<MasonryMat, MasonryBlock, MasonryJoint, MasonryJointGeom, MasonryJointPhys>(names);
+    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    if (host::has("Polyhedra"))
+        enroll<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom, Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     for (const auto enrolment : enrolmentsOfFunctors())
         enrolment(names);
-    enroll<Gl1_MasonryBlock>(names);
-    enroll<Gl1_MasonryJointPhys>(names);
-    enroll<GlExtra_MasonryLegend>(names);
-    enroll<MasonryZones>(names);
-    enroll<MasonryJointLoop>(names);
-    enroll<MasonryTies>(names);
-    enroll<MasonrySprings>(names);
-    enroll<MasonryContacts>(names);
-    enroll<MasonryLoad>(names);
-    enroll<MasonryEnergy>(names);
-    enroll<MasonryIntegrator>(names);
-    enroll<MasonryVtkRecorder>(names);
+    enroll<Gl1_MasonryBlock, Gl1_MasonryJointPhys, GlExtra_MasonryLegend>(names);
+    enroll<MasonryZones, MasonryJointLoop, MasonryTies, MasonrySprings, MasonryContacts, MasonryLoad, MasonryEnergy,
+           MasonryIntegrator, MasonryVtkRecorder>(names);
     Singleton<yade::Omega>::instance().buildDynlibDatabase(names);
     yade::OpenGLRenderer::initDone = false;
 

@@ -652,9 +652,9 @@ TEST_CASE("combined damping of a node takes nothing of a growing force, half of 
                 return std::vector<Row>(rows, row);
             };
             auto u = all(0), v = all(velocity), f = all(force), last = all(before);
-            NodeSums sums;
-            moveBlocks(matrix, {dt, alpha, {0, 0, 0}, combined, {false, false, false}}, everyLane(), u.data(), v.data(),
-                       f.data(), last.data(), sums);
+            LaneUnits units{matrix, everyLane(), u.data(), v.data(), f.data(), last.data(), {}, {}};
+            moveBlocks({dt, alpha, {0, 0, 0}, combined, {false, false, false}}, units);
+            const auto& sums = units.sums;
             const double taken = alpha * std::abs(force) * (combined ? share : 1);
             double after = 0; // energy taken with the velocities after the step [J]
             for (std::size_t row = 0; row < rows; ++row) {
@@ -713,11 +713,12 @@ TEST_CASE("every instruction set moves blocks and plane units to the same bits")
             auto u = u0, v = v0, last = last0;
             std::vector<Row> f(rows, Row{}), scratch(2 * rows);
             Row moments[3]{}, rotation[9], energy;
-            NodeSums sums;
+            LaneUnits units{matrix, everyLane(), u.data(), v.data(), f.data(), last.data(), {}, {}};
+            const auto& sums = units.sums;
             for (int step = 0; step < 20; ++step) {
                 moments[1].lane[2] = step;
                 functions.addForces(matrix, u.data(), moments, f.data(), rotation, &energy, scratch.data());
-                functions.move(matrix, motion, everyLane(), u.data(), v.data(), f.data(), last.data(), sums);
+                functions.move(motion, units);
             }
             std::vector<double> all;
             for (const auto* part : {&u, &v, &last})
@@ -750,7 +751,7 @@ struct Scaling {
     int first, degrees;                 // degrees of freedom of the first unit, and of all
     Eigen::VectorXd masses, places;     // [kg], [m] in the reference state
     std::vector<Row> u, v, f, last, scratch;
-    std::vector<ScaledUnits> members;
+    std::vector<LaneUnits> members;
 
     Scaling(double s, std::vector<const BlockElasticity*> all, bool isWhole, Dice& dice)
         : scaling(s), units(all), whole(isWhole), plane(all[0]->mesh().across >= 0) {

@@ -25,7 +25,7 @@ WITH_YADE = ("host", "engine", "adapters")
 ROOMS = "bodies units joints connectors contacts store watch checkpoint".split()  # of engine
 
 #: What registered classes share, so it is in adapters/ without being one.
-SHARED = "Adapter Assumptions Attribute Colours Connecting FunctorOfLaw".split()
+SHARED = "Adapter Assumptions Attribute Colours Connecting EngineAdapter FunctorOfLaw".split()
 
 
 def sources(folder):
@@ -114,7 +114,7 @@ def test_every_file_of_adapters_holds_one_class_that_yade_sees():
     for path in glob.glob(os.path.join(PLUGIN, "adapters", "*.hpp")):
         name = os.path.basename(path).removesuffix(".hpp")
         if name not in SHARED:
-            key = r"BOOST_CLASS_EXPORT_KEY\(masonry::(\w+)\)"
+            key = r"(?:MASONRY_DECLARE\(|EXPORT_KEY\(masonry::)(\w+)\)"
             assert re.findall(key, open(path).read()) == [name]
 
 

@@ -46,9 +46,9 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
             std::vector<TableRows> rows(many, {0, 0});
             std::vector<Regime> regime(many, Regime::Elastic);
             std::vector<double> stress(many, -1);
-            processor.advance({e, law.tension(), law.shear(), law.shear().lastRatio() - 1}, own, rows.data(),
-                              regime.data(), {opening.data(), a.data(), b.data(), false}, pending.data(), many,
-                              stress.data());
+            processor.advance(
+                {e, law.tension(), law.shear(), law.shear().lastRatio() - 1}, rows.data(),
+                {own, {opening.data(), a.data(), b.data(), false}, regime.data(), pending.data(), many, stress.data()});
             for (int j = 0; j < many; ++j) {
                 CAPTURE(std::string(processor.name));
                 if (!pending[j]) { // nothing happened to it

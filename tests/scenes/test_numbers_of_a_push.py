@@ -225,7 +225,7 @@ def test_a_control_changes_no_force(tmp_path, pushed):
         at = [np.interp(far, curve["middle_x_mm"], curve["base_shear_kN"]) for far in (0.5, 1)]
         peaks.append(at)
         line = 0.1 - 1e-3 * curve["top_x_mm"][-1]
-        press = scene.model.loading.loads["top_force"].point
+        press = scene.model.loading.loads["top_press"].point
         assert press[0] == approx(line, abs=1e-4)
         # it is not the platen that is pushed
         assert "wall" not in run

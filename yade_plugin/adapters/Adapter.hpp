@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the classes of this plugin that YADE sees have in common. Each class lists its attributes once, and this list
-// serves Python, dict(), saving, checkpoints, the check of values and the documentation.
+// What the classes of this plugin that YADE sees have in common. Each lists its attributes once, for Python, dict(),
+// saving, checkpoints, the check of values and the documentation.
 //
-// A class `T : Adapter<T, HostBase>` defines `className`, `baseName`, `doc` and
+// A class `T : Adapter<T, HostBase>` begins with MASONRY_CLASS or MASONRY_DISPATCHED, and defines `doc` and
 //     template <class Visit> static void attributes(Visit&& visit) {
 //         visit("young", &T::young, number("Pa", "Young's modulus").above(0));
 //     }
 // An attribute whose value lives elsewhere, as the state of a joint does, is given by two functions in place of a
-// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`. State that Python does not see is given by one
-// function that visits its numbers: `visit("record", &T::visitRecord, ...)`, see common/StateNumbers.hpp. A class may
-// also define
+// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`; one that all objects share by a static member;
+// state that Python does not see by a function that visits its numbers: `visit("record", &T::visitRecord, ...)`, see
+// common/StateNumbers.hpp. A class may also define
 //     void postLoad()                               checks and prepares the object after attributes were changed
 //     std::vector<std::string> problems()           says what is wrong beyond the bounds of single attributes
 //     static constexpr ClassRole declares           is its role, which an engine must have
@@ -43,6 +43,7 @@ template <class Base> using StateOf = std::conditional_t<std::is_base_of<Statefu
 
 template <class Derived, class Base> class Adapter : public Base, public StateOf<Base>, public RoleOf<Derived, Base> {
 public:
+    using HostBase = Base;
     static constexpr ClassRole declares = ClassRole::None;
 
     std::string getClassName() const override { return Derived::className; }
@@ -209,22 +210,32 @@ private:
     }
 };
 
-// Makes a class known to YADE, which then creates objects by its name, and adds the name to a list.
-template <class T> void enroll(std::vector<std::string>& names) {
-    Singleton<yade::ClassFactory>::instance().registerFactorable(
-        T::className, [] { return static_cast<yade::Factorable*>(new T); },
-        [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); });
-    names.push_back(T::className);
-    if (T::declares != ClassRole::None) declareRole(T::declares, T::className);
+// Makes classes known to YADE, which then creates objects by their names, and adds the names to a list.
+template <class... T> void enroll(std::vector<std::string>& names) {
+    const auto one = [&](const char* name, ClassRole role, auto... makers) {
+        Singleton<yade::ClassFactory>::instance().registerFactorable(name, makers...);
+        names.push_back(name);
+        if (role != ClassRole::None) declareRole(role, name);
+    };
+    (one(
+         T::className, T::declares, [] { return static_cast<yade::Factorable*>(new T); },
+         [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); }),
+     ...);
 }
 
-// The number by which YADE's dispatchers know a class of materials, geometries or physics. Stands first in the class.
-#define MASONRY_DISPATCHED(Class, HostBase)                                                                            \
+// The names of a class and of its base in YADE. This macro or the next stands first in a class.
+#define MASONRY_CLASS(Class, Base)                                                                                     \
 public:                                                                                                                \
+    static constexpr const char* className = #Class;                                                                   \
+    static constexpr const char* baseName = #Base;
+
+// These, and the number by which YADE's dispatchers know a class of materials, shapes, geometries or physics.
+#define MASONRY_DISPATCHED(Class, Base)                                                                                \
+    MASONRY_CLASS(Class, Base)                                                                                         \
     int& modifyClassIndex() override { return dispatchIndex(); }                                                       \
     const int& getClassIndex() const override { return dispatchIndex(); }                                              \
     const int& getBaseClassIndex(int depth) const override {                                                           \
-        static HostBase base;                                                                                          \
+        static yade::Base base;                                                                                        \
         return depth == 1 ? base.getClassIndex() : base.getBaseClassIndex(depth - 1);                                  \
     }                                                                                                                  \
                                                                                                                        \
@@ -236,4 +247,27 @@ private:                                                                        
                                                                                                                        \
 public:
 
+// The two classes that a functor of YADE is for.
+#define MASONRY_FOR_PAIRS(First, Second)                                                                               \
+    std::string get2DFunctorType1() const override { return #First; }                                                  \
+    std::string get2DFunctorType2() const override { return #Second; }                                                 \
+    std::vector<std::string> getFunctorTypes() const override { return {#First, #Second}; }                            \
+    std::string checkOrder() const override { return #First " " #Second; }
+
+// The class that a functor of YADE's 3-D view draws.
+#define MASONRY_DRAWS(Class)                                                                                           \
+    std::string get1DFunctorType1() const override { return #Class; }                                                  \
+    std::vector<std::string> getFunctorTypes() const override { return {#Class}; }                                     \
+    std::string renders() const override { return #Class; }                                                            \
+    void initgl() override {}
+
 } // namespace masonry
+
+// Makes a class known to YADE's archives, after the namespace in its header and in its source file. Its Adapter is
+// compiled there alone.
+#define MASONRY_DECLARE(Class)                                                                                         \
+    extern template class masonry::Adapter<masonry::Class, masonry::Class::HostBase>;                                  \
+    BOOST_CLASS_EXPORT_KEY(masonry::Class)
+#define MASONRY_DEFINE(Class)                                                                                          \
+    template class masonry::Adapter<masonry::Class, masonry::Class::HostBase>;                                         \
+    BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Class)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What nobody has given of an object, and where each of these values is from. A class that derives from it beside
-// Adapter notes its defaults when Python makes an object, and forgets those that are set. An object that YADE has
-// loaded from a file has no note: everything counts as given.
+// Adapter notes its defaults when Python makes an object, and forgets those that are set. Of an object from a file
+// everything counts as given.
 #pragma once
 #include "Attribute.hpp"
 #include <map>

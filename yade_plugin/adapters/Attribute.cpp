@@ -5,16 +5,8 @@
 
 namespace masonry {
 
-template class AttributeOf<bool>;
-template class AttributeOf<int>;
-template class AttributeOf<long>;
-template class AttributeOf<double>;
-template class AttributeOf<std::string>;
-template class AttributeOf<Vector3r>;
-template class AttributeOf<std::vector<int>>;
-template class AttributeOf<std::vector<double>>;
-template class AttributeOf<std::vector<Vector3r>>;
-template class AttributeOf<std::vector<TableRow>>;
+#define MASONRY_COMPILED_HERE(T) template class AttributeOf<T>;
+MASONRY_ATTRIBUTES(MASONRY_COMPILED_HERE)
 
 std::string shown(const py::object& value) {
     const py::str whole(value);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The attributes of a class that YADE sees, whatever their types: what Python, dict(), saving, checkpoints and the
-// check of values do with them. What depends on the type of a value is compiled once for this type, and not again for
-// each class, which would take most of the time of a build.
+// check of values do with them. What depends on the type of a value is compiled once for this type: for each class anew
+// it would take most of the time of a build.
 #pragma once
 #include "common/Property.hpp"
 #include "engine/checkpoint/Transfer.hpp"
@@ -14,6 +14,7 @@
 #include <boost/serialization/shared_ptr.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -105,11 +106,13 @@ public:
     virtual void archive(void* object, boost::archive::xml_oarchive&) const = 0;
 };
 
-template <class T> class AttributeOf : public Attribute {
+template <class T> class AttributeOf final : public Attribute {
+    const std::function<T(void* object)> get;
+    const std::function<void(void* object, const T& value)> put;
+
 public:
-    using Attribute::Attribute;
-    virtual T get(void* object) const = 0;
-    virtual void put(void* object, const T& value) const = 0;
+    AttributeOf(const char* name, const Property& property, int flags, decltype(get) get, decltype(put) put)
+        : Attribute(name, property, flags), get(std::move(get)), put(std::move(put)) {}
 
     py::object value(void* object) const override { return py::object(get(object)); }
     void set(void* object, const std::string& whole, const py::object& value) const override {
@@ -159,59 +162,16 @@ private:
     }
 };
 
-// An attribute that is a member of the class or of a base of it, and one that is computed.
-template <class Class, class Owner, class T> class MemberAttribute final : public AttributeOf<T> {
-    T Owner::*const member_;
-
-public:
-    MemberAttribute(const char* name, T Owner::*member, const Property& property, int flags)
-        : AttributeOf<T>(name, property, flags), member_(member) {}
-    T get(void* object) const override { return static_cast<Class*>(object)->*member_; }
-    void put(void* object, const T& value) const override { static_cast<Class*>(object)->*member_ = value; }
-};
-template <class Class, class Owner, class T> class ComputedAttribute final : public AttributeOf<T> {
-    const Computed<Owner, T> functions_;
-
-public:
-    ComputedAttribute(const char* name, const Computed<Owner, T>& functions, const Property& property, int flags)
-        : AttributeOf<T>(name, property, flags), functions_(functions) {}
-    T get(void* object) const override { return (static_cast<Class*>(object)->*functions_.get)(); }
-    void put(void* object, const T& value) const override {
-        if (functions_.put) (static_cast<Class*>(object)->*functions_.put)(value);
-    }
-};
-
-// State that Python does not see, and whose numbers a function of the class visits.
-template <class Class, class Owner> class StateAttribute final : public AttributeOf<std::vector<double>> {
-    void (Owner::*const visit_)(StateNumbers&);
-
-public:
-    StateAttribute(const char* name, void (Owner::*visit)(StateNumbers&), const Property& property)
-        : AttributeOf(name, property, Hidden), visit_(visit) {}
-    std::vector<double> get(void* object) const override {
-        std::vector<double> flat;
-        StateNumbers to(flat);
-        (static_cast<Class*>(object)->*visit_)(to);
-        return flat;
-    }
-    void put(void* object, const std::vector<double>& flat) const override {
-        StateNumbers from(flat, std::string("the saved state is damaged at '") + name + "'");
-        (static_cast<Class*>(object)->*visit_)(from);
-        from.end();
-    }
-};
-
 // Types that several classes have attributes of are compiled in Attribute.cpp.
-extern template class AttributeOf<bool>;
-extern template class AttributeOf<int>;
-extern template class AttributeOf<long>;
-extern template class AttributeOf<double>;
-extern template class AttributeOf<std::string>;
-extern template class AttributeOf<Vector3r>;
-extern template class AttributeOf<std::vector<int>>;
-extern template class AttributeOf<std::vector<double>>;
-extern template class AttributeOf<std::vector<Vector3r>>;
-extern template class AttributeOf<std::vector<TableRow>>;
+#define MASONRY_ATTRIBUTES(X)                                                                                          \
+    X(bool)                                                                                                            \
+    X(int)                                                                                                             \
+    X(long)                                                                                                            \
+    X(double)                                                                                                          \
+    X(std::string)                                                                                                     \
+    X(Vector3r) X(std::vector<int>) X(std::vector<double>) X(std::vector<Vector3r>) X(std::vector<TableRow>)
+#define MASONRY_COMPILED_ELSEWHERE(T) extern template class AttributeOf<T>;
+MASONRY_ATTRIBUTES(MASONRY_COMPILED_ELSEWHERE)
 
 // All attributes of a class, in the order in which it lists them.
 class Attributes {
@@ -245,18 +205,51 @@ private:
     using List = std::vector<std::unique_ptr<const Attribute>>;
     template <class Class> struct Listing {
         List& all;
+        template <class T, class Get, class Put>
+        void add(const char* name, const Property& property, int flags, Get&& get, Put&& put) const {
+            all.push_back(std::make_unique<AttributeOf<T>>(
+                name, property, flags, [get](void* object) -> T { return get(*static_cast<Class*>(object)); },
+                [put](void* object, const T& value) { put(*static_cast<Class*>(object), value); }));
+        }
+
+        // A member of the class or of a base of it.
         template <class Owner, class T>
         void operator()(const char* name, T Owner::*member, const Property& property, int flags = Plain) const {
-            all.push_back(std::make_unique<MemberAttribute<Class, Owner, T>>(name, member, property, flags));
+            add<T>(
+                name, property, flags, [member](Class& object) { return object.*member; },
+                [member](Class& object, const T& value) { object.*member = value; });
         }
         template <class Owner, class T>
         void operator()(const char* name, const Computed<Owner, T>& functions, const Property& property,
                         int flags = Plain) const {
-            all.push_back(std::make_unique<ComputedAttribute<Class, Owner, T>>(name, functions, property, flags));
+            add<T>(
+                name, property, flags, [functions](Class& object) { return (object.*functions.get)(); },
+                [functions](Class& object, const T& value) {
+                    if (functions.put) (object.*functions.put)(value);
+                });
         }
+        // A value that all objects of the class share.
+        template <class T> void operator()(const char* name, T* shared, const Property& property) const {
+            add<T>(
+                name, property, Plain, [shared](Class&) { return *shared; },
+                [shared](Class&, const T& value) { *shared = value; });
+        }
+        // State that Python does not see, and whose numbers a function of the class visits.
         template <class Owner>
         void operator()(const char* name, void (Owner::*visit)(StateNumbers&), const Property& property) const {
-            all.push_back(std::make_unique<StateAttribute<Class, Owner>>(name, visit, property));
+            add<std::vector<double>>(
+                name, property, Hidden,
+                [visit](Class& object) {
+                    std::vector<double> flat;
+                    StateNumbers to(flat);
+                    (object.*visit)(to);
+                    return flat;
+                },
+                [visit, name](Class& object, const std::vector<double>& flat) {
+                    StateNumbers from(flat, std::string("the saved state is damaged at '") + name + "'");
+                    (object.*visit)(from);
+                    from.end();
+                });
         }
     };
 

@@ -16,7 +16,7 @@ Colour ColourScale::at(double value) const {
     return mixed;
 }
 
-Colour ColourScale::of(int number) const { return colours[std::size_t(number) % colours.size()]; }
+Colour ColourScale::of(int number) const { return colours[number % colours.size()]; }
 
 DrawnScales& drawnScales() {
     static DrawnScales scales;

@@ -24,10 +24,7 @@ public:
 
     template <class Visit> static void attributes(Visit&&) {}
 
-    std::string get2DFunctorType1() const override { return "MasonryJointGeom"; }
-    std::string get2DFunctorType2() const override { return "MasonryJointPhys"; }
-    std::vector<std::string> getFunctorTypes() const override { return {"MasonryJointGeom", "MasonryJointPhys"}; }
-    std::string checkOrder() const override { return "MasonryJointGeom MasonryJointPhys"; }
+    MASONRY_FOR_PAIRS(MasonryJointGeom, MasonryJointPhys)
     bool go(shared_ptr<yade::IGeom>& geom, shared_ptr<yade::IPhys>& phys, yade::Interaction* interaction) override {
         advanceJoint(*this->scene, static_cast<MasonryJointGeom&>(*geom), static_cast<MasonryJointPhys&>(*phys),
                      *interaction, Derived::law);

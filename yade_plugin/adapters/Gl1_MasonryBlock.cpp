@@ -7,19 +7,14 @@
 #include <algorithm>
 #include <unordered_map>
 
-template class masonry::Adapter<masonry::Gl1_MasonryBlock, yade::GlShapeFunctor>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Gl1_MasonryBlock)
+MASONRY_DEFINE(Gl1_MasonryBlock)
 
 namespace masonry {
 
 namespace {
 
-struct BlockSettings {
-    std::string colours = "displacement";
-    double most = 0;
-    bool edges = true;
-};
-BlockSettings blockSettings;
+using BlockDrawer = Gl1_MasonryBlock;
+
 double largestMotion = 0; // of the values that were drawn since the settings changed
 
 // Colours of materials, by the order in which the scene names them.
@@ -46,10 +41,10 @@ struct Materials {
 Materials known;
 
 ColourScale scaleOfBlocks() {
-    const double most = blockSettings.most > 0 ? blockSettings.most : largestMotion;
-    if (blockSettings.colours == "displacement") return scaleOf("displacement [m]", most, false);
-    if (blockSettings.colours == "velocity") return scaleOf("velocity [m/s]", most, false);
-    if (blockSettings.colours == "material") return {"material", 0, known.names, materials};
+    const double most = BlockDrawer::most > 0 ? BlockDrawer::most : largestMotion;
+    if (BlockDrawer::colours == "displacement") return scaleOf("displacement [m]", most, false);
+    if (BlockDrawer::colours == "velocity") return scaleOf("velocity [m/s]", most, false);
+    if (BlockDrawer::colours == "material") return {"material", 0, known.names, materials};
     return {};
 }
 
@@ -64,20 +59,15 @@ void corner(const Vector3r& p) { glVertex3d(p[0], p[1], p[2]); }
 
 } // namespace
 
-std::string Gl1_MasonryBlock::colours() { return blockSettings.colours; }
-void Gl1_MasonryBlock::setColours(const std::string& value) {
-    if (value != blockSettings.colours) largestMotion = 0;
-    blockSettings.colours = value;
+void Gl1_MasonryBlock::postLoad() {
+    check();
+    largestMotion = 0;
 }
-double Gl1_MasonryBlock::most() { return blockSettings.most; }
-void Gl1_MasonryBlock::setMost(const double& value) { blockSettings.most = value; }
-bool Gl1_MasonryBlock::edges() { return blockSettings.edges; }
-void Gl1_MasonryBlock::setEdges(const bool& value) { blockSettings.edges = value; }
 
 std::vector<std::string> Gl1_MasonryBlock::problems() const {
     for (const char* choice : {"displacement", "velocity", "material", "own"})
-        if (blockSettings.colours == choice) return {};
-    return {"colours '" + blockSettings.colours + "' must be 'displacement', 'velocity', 'material' or 'own'"};
+        if (colours == choice) return {};
+    return {"colours '" + colours + "' must be 'displacement', 'velocity', 'material' or 'own'"};
 }
 
 void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr<yade::State>& state, bool wire,
@@ -86,18 +76,17 @@ void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr
     const auto& v = block.v;
     const auto& t = block.triangles;
     Colour colour;
-    if (blockSettings.colours == "material") {
+    if (colours == "material") {
         if (!known.ofShape.count(shape.get())) known.read();
         const auto number = known.ofShape.find(shape.get());
         drawnScales().blocks = scaleOfBlocks();
         colour = drawnScales().blocks.of(number == known.ofShape.end() ? 0 : number->second);
-    } else if (blockSettings.colours == "own") {
+    } else if (colours == "own") {
         drawnScales().blocks = {};
         for (int c = 0; c < 3; ++c)
             colour[c] = float(shape->color[c]);
     } else {
-        const double value =
-            blockSettings.colours == "velocity" ? state->vel.norm() : Vector3r(state->pos - state->refPos).norm();
+        const double value = colours == "velocity" ? state->vel.norm() : Vector3r(state->pos - state->refPos).norm();
         largestMotion = std::max(largestMotion, value);
         drawnScales().blocks = scaleOfBlocks();
         colour = drawnScales().blocks.at(value);
@@ -120,7 +109,7 @@ void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr
         glEnd();
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    if (!wire && !blockSettings.edges) {
+    if (!wire && !edges) {
         glEnable(GL_LIGHTING);
         return;
     }

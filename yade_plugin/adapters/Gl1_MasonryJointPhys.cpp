@@ -6,19 +6,14 @@
 #include <algorithm>
 #include <unordered_map>
 
-template class masonry::Adapter<masonry::Gl1_MasonryJointPhys, yade::GlIPhysFunctor>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Gl1_MasonryJointPhys)
+MASONRY_DEFINE(Gl1_MasonryJointPhys)
 
 namespace masonry {
 
 namespace {
 
-struct JointSettings {
-    std::string colours = "damage";
-    double most = 0;
-    double scale = 1;
-};
-JointSettings jointSettings;
+using JointDrawer = Gl1_MasonryJointPhys;
+
 double largestOpening = 0; // of the openings that were drawn since the settings changed
 
 // A joint as it is drawn: the polygons of its subcontacts at their places, and the value of each.
@@ -30,8 +25,8 @@ struct Drawing {
     bool drawn = false;
 };
 
-// All joints of a scene at one time. YADE asks for one joint after the other while the run may go on in the background.
-// So the state of all is read at once, between two steps, when a joint is asked for a second time.
+// All joints of a scene at one time. YADE asks for one after the other while the run may go on in the background: the
+// state of all is read at once, between two steps, when a joint is asked for a second time.
 class Picture {
 public:
     Drawing* of(const yade::IPhys* phys) {
@@ -66,19 +61,19 @@ private:
                 const auto shown = [&](const JointField& field) {
                     return joint.phys->group->columns->shown(p, joint.phys->index, field);
                 };
-                drawing.values.push_back(jointSettings.colours == "opening" ? s.opening
-                                         : jointSettings.colours == "regime"
+                drawing.values.push_back(JointDrawer::colours == "opening" ? s.opening
+                                         : JointDrawer::colours == "regime"
                                              ? double(s.regime)
                                              : std::max({shown(field::damageTension), shown(field::damageShear),
                                                          shown(field::damageCompression)}));
-                if (jointSettings.colours == "opening") largestOpening = std::max(largestOpening, s.opening);
+                if (JointDrawer::colours == "opening") largestOpening = std::max(largestOpening, s.opening);
             }
             drawing.drawn = false;
         }
         drawnScales().joints =
-            jointSettings.colours == "regime" ? regimeScale()
-            : jointSettings.colours == "opening"
-                ? scaleOf("opening of joints [m]", jointSettings.most > 0 ? jointSettings.most : largestOpening, true)
+            JointDrawer::colours == "regime" ? regimeScale()
+            : JointDrawer::colours == "opening"
+                ? scaleOf("opening of joints [m]", JointDrawer::most > 0 ? JointDrawer::most : largestOpening, true)
                 : scaleOf("damage of joints [-]", 1, true);
     }
 
@@ -90,20 +85,15 @@ Picture picture;
 
 } // namespace
 
-std::string Gl1_MasonryJointPhys::colours() { return jointSettings.colours; }
-void Gl1_MasonryJointPhys::setColours(const std::string& value) {
-    if (value != jointSettings.colours) largestOpening = 0;
-    jointSettings.colours = value;
+void Gl1_MasonryJointPhys::postLoad() {
+    check();
+    largestOpening = 0;
 }
-double Gl1_MasonryJointPhys::most() { return jointSettings.most; }
-void Gl1_MasonryJointPhys::setMost(const double& value) { jointSettings.most = value; }
-double Gl1_MasonryJointPhys::scale() { return jointSettings.scale; }
-void Gl1_MasonryJointPhys::setScale(const double& value) { jointSettings.scale = value; }
 
 std::vector<std::string> Gl1_MasonryJointPhys::problems() const {
     for (const char* choice : {"damage", "opening", "regime"})
-        if (jointSettings.colours == choice) return {};
-    return {"colours '" + jointSettings.colours + "' must be 'damage', 'opening' or 'regime'"};
+        if (colours == choice) return {};
+    return {"colours '" + colours + "' must be 'damage', 'opening' or 'regime'"};
 }
 
 void Gl1_MasonryJointPhys::go(const shared_ptr<yade::IPhys>& phys, const shared_ptr<yade::Interaction>& interaction,
@@ -120,7 +110,7 @@ void Gl1_MasonryJointPhys::go(const shared_ptr<yade::IPhys>& phys, const shared_
             const Vector3r arm = p - r.sides[side].position;
             both += drawing->motions[side] + drawing->turns[side] * arm - arm;
         }
-        return Vector3r(p + jointSettings.scale * 0.5 * both);
+        return Vector3r(p + scale * 0.5 * both);
     };
     glDisable(GL_LIGHTING);
     glDisable(GL_CULL_FACE);

@@ -5,8 +5,7 @@
 #include <GL/gl.h>
 #include <utility>
 
-template class masonry::Adapter<masonry::GlExtra_MasonryLegend, yade::GlExtraDrawer>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::GlExtra_MasonryLegend)
+MASONRY_DEFINE(GlExtra_MasonryLegend)
 
 // Of FreeGLUT, which YADE has loaded and started: a letter at the place that glRasterPos has set.
 extern "C" {

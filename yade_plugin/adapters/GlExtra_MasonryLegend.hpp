@@ -6,9 +6,7 @@
 namespace masonry {
 
 class GlExtra_MasonryLegend : public Adapter<GlExtra_MasonryLegend, yade::GlExtraDrawer> {
-public:
-    static constexpr const char* className = "GlExtra_MasonryLegend";
-    static constexpr const char* baseName = "GlExtraDrawer";
+    MASONRY_CLASS(GlExtra_MasonryLegend, GlExtraDrawer)
     static constexpr const char* doc =
         "Says in YADE's 3-D view what the colours of blocks and joints mean. It works in "
         "Renderer().extraDrawers; masonry.model.window.show() puts it there.";
@@ -20,5 +18,4 @@ public:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::GlExtra_MasonryLegend, yade::GlExtraDrawer>;
-BOOST_CLASS_EXPORT_KEY(masonry::GlExtra_MasonryLegend)
+MASONRY_DECLARE(GlExtra_MasonryLegend)

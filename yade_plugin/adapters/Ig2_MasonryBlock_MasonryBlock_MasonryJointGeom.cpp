@@ -5,8 +5,7 @@
 #include "engine/joints/Neighbours.hpp"
 #include "engine/watch/EngineScope.hpp"
 
-template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
+MASONRY_DEFINE(Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
 
 namespace masonry {
 

@@ -7,9 +7,7 @@ namespace masonry {
 
 class Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
     : public Adapter<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor> {
-public:
-    static constexpr const char* className = "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom";
-    static constexpr const char* baseName = "IGeomFunctor";
+    MASONRY_CLASS(Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, IGeomFunctor)
     static constexpr const char* doc =
         "Creates a MasonryJointGeom from the faces that two blocks share in the reference state, and updates "
         "its jumps. A pair without a shared face gets no joint; utils.createInteraction() for such a pair raises an "
@@ -56,10 +54,7 @@ public:
         return fixed_.problems({"subcontacts", "rows"}, {double(subcontacts), double(rows)});
     }
 
-    std::string get2DFunctorType1() const override { return "MasonryBlock"; }
-    std::string get2DFunctorType2() const override { return "MasonryBlock"; }
-    std::vector<std::string> getFunctorTypes() const override { return {"MasonryBlock", "MasonryBlock"}; }
-    std::string checkOrder() const override { return "MasonryBlock MasonryBlock"; }
+    MASONRY_FOR_PAIRS(MasonryBlock, MasonryBlock)
     void preStep() override;
     bool go(const shared_ptr<yade::Shape>&, const shared_ptr<yade::Shape>&, const yade::State&, const yade::State&,
             const Vector3r& shift, const bool& force, const shared_ptr<yade::Interaction>&) override;
@@ -76,5 +71,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
-BOOST_CLASS_EXPORT_KEY(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
+MASONRY_DECLARE(Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)

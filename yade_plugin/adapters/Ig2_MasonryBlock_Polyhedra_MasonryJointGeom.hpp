@@ -6,23 +6,16 @@ namespace masonry {
 
 class Ig2_MasonryBlock_Polyhedra_MasonryJointGeom
     : public Adapter<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom, Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom> {
-public:
-    static constexpr const char* className = "Ig2_MasonryBlock_Polyhedra_MasonryJointGeom";
-    static constexpr const char* baseName = "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom";
+    MASONRY_CLASS(Ig2_MasonryBlock_Polyhedra_MasonryJointGeom, Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
     static constexpr const char* doc = "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom for a MasonryBlock and a "
                                        "Polyhedra. Only a YADE that has Polyhedra knows this "
                                        "class.";
 
     template <class Visit> static void attributes(Visit&&) {}
 
-    std::string get2DFunctorType1() const override { return "MasonryBlock"; }
-    std::string get2DFunctorType2() const override { return "Polyhedra"; }
-    std::vector<std::string> getFunctorTypes() const override { return {"MasonryBlock", "Polyhedra"}; }
-    std::string checkOrder() const override { return "MasonryBlock Polyhedra"; }
+    MASONRY_FOR_PAIRS(MasonryBlock, Polyhedra)
 };
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::Ig2_MasonryBlock_Polyhedra_MasonryJointGeom,
-                                       masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>;
-BOOST_CLASS_EXPORT_KEY(masonry::Ig2_MasonryBlock_Polyhedra_MasonryJointGeom)
+MASONRY_DECLARE(Ig2_MasonryBlock_Polyhedra_MasonryJointGeom)

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
 
-template class masonry::Adapter<masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom,
-                                masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom)
+MASONRY_DEFINE(Ig2_Polyhedra_Polyhedra_MasonryJointGeom)

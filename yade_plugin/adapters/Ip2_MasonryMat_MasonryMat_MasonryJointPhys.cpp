@@ -4,8 +4,7 @@
 #include "engine/bodies/BodyCheck.hpp"
 #include "engine/joints/Lumping.hpp"
 
-template class masonry::Adapter<masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)
+MASONRY_DEFINE(Ip2_MasonryMat_MasonryMat_MasonryJointPhys)
 
 namespace masonry {
 

@@ -7,9 +7,7 @@ namespace masonry {
 
 class Ip2_MasonryMat_MasonryMat_MasonryJointPhys
     : public Adapter<Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor> {
-public:
-    static constexpr const char* className = "Ip2_MasonryMat_MasonryMat_MasonryJointPhys";
-    static constexpr const char* baseName = "IPhysFunctor";
+    MASONRY_CLASS(Ip2_MasonryMat_MasonryMat_MasonryJointPhys, IPhysFunctor)
     static constexpr const char* doc =
         "Gives every joint its property set: the first of `joints` whose jointSet and direction fit. For any other "
         "rule call assign(interaction, joint).";
@@ -26,10 +24,7 @@ public:
                 "Give an interaction this MasonryJoint, before the first step, whatever `joints` says.");
     }
 
-    std::string get2DFunctorType1() const override { return "MasonryMat"; }
-    std::string get2DFunctorType2() const override { return "MasonryMat"; }
-    std::vector<std::string> getFunctorTypes() const override { return {"MasonryMat", "MasonryMat"}; }
-    std::string checkOrder() const override { return "MasonryMat MasonryMat"; }
+    MASONRY_FOR_PAIRS(MasonryMat, MasonryMat)
     void go(const shared_ptr<yade::Material>&, const shared_ptr<yade::Material>&,
             const shared_ptr<yade::Interaction>&) override;
     using FunctorWrapper::go;
@@ -41,5 +36,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor>;
-BOOST_CLASS_EXPORT_KEY(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)
+MASONRY_DECLARE(Ip2_MasonryMat_MasonryMat_MasonryJointPhys)

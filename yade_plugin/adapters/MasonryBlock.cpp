@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryBlock.hpp"
 
-template class masonry::Adapter<masonry::MasonryBlock, yade::Shape>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryBlock)
+MASONRY_DEFINE(MasonryBlock)
 
 namespace masonry {
 

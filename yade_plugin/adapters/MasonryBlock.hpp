@@ -7,9 +7,7 @@
 namespace masonry {
 
 class MasonryBlock : public Adapter<MasonryBlock, yade::Shape>, public BlockSurface {
-    MASONRY_DISPATCHED(MasonryBlock, yade::Shape)
-    static constexpr const char* className = "MasonryBlock";
-    static constexpr const char* baseName = "Shape";
+    MASONRY_DISPATCHED(MasonryBlock, Shape)
     static constexpr const char* doc =
         "A convex block, about its centroid and in its principal axes. masonry.addBlock() makes bodies of this shape. "
         "MasonryBlock.around(points) gives the shape alone, with the place and orientation of its body; an object "
@@ -54,5 +52,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryBlock, yade::Shape>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryBlock)
+MASONRY_DECLARE(MasonryBlock)

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryContacts.hpp"
-#include "engine/watch/EngineScope.hpp"
 
-template class masonry::Adapter<masonry::MasonryContacts, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryContacts)
+MASONRY_DEFINE(MasonryContacts)
 
 namespace masonry {
 
-void MasonryContacts::action() {
-    const EngineScope scope(*scene, *this);
-    act(scope.store());
-    conversion_.act(scope.store(), *this);
-    lookAtFalls(scope.store());
-    scope.end();
+void MasonryContacts::step(SceneStore& store) {
+    act(store);
+    conversion_.act(store, *this);
+    lookAtFalls(store);
 }
 
 void MasonryContacts::lookAtFalls(SceneStore& store) {
@@ -20,7 +16,7 @@ void MasonryContacts::lookAtFalls(SceneStore& store) {
     const auto held = heldByJoints(store);
     std::vector<int> loose;
     for (int body = 0; body < store.bodies.size(); ++body)
-        if (store.bodies.has(body) && !held[std::size_t(body)]) loose.push_back(body);
+        if (store.bodies.has(body) && !held[body]) loose.push_back(body);
     falls_.look(store, loose, sizes(), store.gravity());
     if (dampsLoose) return;
     for (int body : loose)

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/contacts/FallenBlocks.hpp"
 #include "engine/contacts/JointConversion.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class SceneStore;
-
-class MasonryContacts : public Adapter<MasonryContacts, yade::GlobalEngine>, public Contacts {
-public:
-    static constexpr const char* className = "MasonryContacts";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
+    MASONRY_CLASS(MasonryContacts, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Contacts;
     static constexpr const char* doc =
         "Contacts of rigid blocks wherever they meet, also after large motions: of all pairs that no joint connects. "
@@ -95,8 +90,7 @@ public:
     bool dampsLoose = true;
 
     using Contacts::problems;
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 
 private:
     int countTouching();
@@ -116,5 +110,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryContacts, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryContacts)
+MASONRY_DECLARE(MasonryContacts)

@@ -1,36 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryEnergy.hpp"
 #include "engine/contacts/Contacts.hpp"
-#include "engine/watch/EngineScope.hpp"
 
-template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryEnergy)
+MASONRY_DEFINE(MasonryEnergy)
 
 namespace masonry {
 
-void MasonryEnergy::action() {
-    const EngineScope scope(*scene, *this);
-    audit(scope.store());
-    scope.end();
-}
+void MasonryEnergy::step(SceneStore& store) { audit(store); }
 
-void MasonryEnergy::given() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    countPresentMotion(store);
-}
+void MasonryEnergy::given() { countPresentMotion(*StillScene()); }
 
 py::dict MasonryEnergy::balance() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update(SceneStore::ScanScope::Joints); // a full look would take too long: every row of curve.csv calls this
-    const auto [energies, stored, lost, error, size] = relativeBalance(store);
-    const double impacts = store.loop ? store.loop->impactWork : 0;
+    const StillScene scene(SceneStore::ScanScope::Joints); // every row of curve.csv calls this: a full look is too slow
+    const auto [energies, stored, lost, error, size] = relativeBalance(*scene);
+    const double impacts = scene->loop ? scene->loop->impactWork : 0;
     py::dict all;
     all["external"] = energies.work;
     all["gravity"] = energies.falls;
-    all["refining"] = store.loop ? store.loop->refiningEnergy : 0;
+    all["refining"] = scene->loop ? scene->loop->refiningEnergy : 0;
     all["kinetic"] = energies.moving;
     all["damping"] = energies.drag - impacts;
     all["impacts"] = impacts;
@@ -41,13 +28,13 @@ py::dict MasonryEnergy::balance() {
     all["dissipated_tension"] = lost[0];
     all["dissipated_shear"] = lost[1];
     all["dissipated_compression"] = lost[2];
-    if (!store.allConnectors.empty()) {
+    if (!scene->allConnectors.empty()) {
         all["elastic_connectors"] = energies.inConnectors;
         all["dissipated_connectors"] = energies.lostInConnectors;
     }
-    if (!store.allContacts.empty()) {
+    if (!scene->allContacts.empty()) {
         double converted = 0;
-        for (const auto* contacts : store.allContacts)
+        for (const auto* contacts : scene->allContacts)
             converted += contacts->conversionEnergy;
         all["handing"] = converted;
         all["elastic_contacts"] = energies.contacts[0];

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/bodies/Ledger.hpp"
 #include "engine/watch/EnergyAudit.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public EnergyAudit {
-public:
-    static constexpr const char* className = "MasonryEnergy";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryEnergy : public EngineAdapter<MasonryEnergy>, public EnergyAudit {
+    MASONRY_CLASS(MasonryEnergy, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Watch;
     static constexpr const char* doc =
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
@@ -99,8 +96,7 @@ public:
                  "setting velocities by hand, if the run has made a step before.");
     }
 
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 
 private:
     py::dict balance();
@@ -109,5 +105,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryEnergy)
+MASONRY_DECLARE(MasonryEnergy)

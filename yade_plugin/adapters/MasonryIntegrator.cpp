@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryIntegrator.hpp"
-#include "engine/watch/EngineScope.hpp"
 
-template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
+MASONRY_DEFINE(MasonryIntegrator)
 
 namespace masonry {
 
-void MasonryIntegrator::action() {
-    const EngineScope scope(*scene, *this);
-    advance(*scene, scope->bodies, scope->loads, scope->foreignForces);
-    scope.end();
-}
+void MasonryIntegrator::step(SceneStore& store) { advance(*scene, store.bodies, store.loads, store.foreignForces); }
 
 } // namespace masonry

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/bodies/Integrator.hpp"
 #include "engine/bodies/Ledger.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public Integrator {
-public:
-    static constexpr const char* className = "MasonryIntegrator";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryIntegrator : public EngineAdapter<MasonryIntegrator>, public Integrator {
+    MASONRY_CLASS(MasonryIntegrator, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Integrator;
     static constexpr const char* doc =
         "Moves the rigid bodies by the equations of NewtonIntegrator (paper eqs. (1)-(3)) and counts their energies. "
@@ -42,11 +39,9 @@ public:
     }
 
     using Integrator::problems;
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 };
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryIntegrator)
+MASONRY_DECLARE(MasonryIntegrator)

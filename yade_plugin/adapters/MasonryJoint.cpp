@@ -4,8 +4,7 @@
 #include "law/Laws.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
 
-template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
+MASONRY_DEFINE(MasonryJoint)
 
 namespace masonry {
 

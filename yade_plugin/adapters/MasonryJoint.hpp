@@ -6,9 +6,7 @@
 namespace masonry {
 
 class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public PropertySet, public Assumptions {
-public:
-    static constexpr const char* className = "MasonryJoint";
-    static constexpr const char* baseName = "Serializable";
+    MASONRY_CLASS(MasonryJoint, Serializable)
     static constexpr const char* doc =
         "Properties of one kind of joint (bed, head, crack, support, or any name), shared by all joints of that kind. "
         "Defaults: bed joint of the calcium-silicate walls (paper table 2); the sources of values that the paper does "
@@ -55,5 +53,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryJoint)
+MASONRY_DECLARE(MasonryJoint)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointGeom.hpp"
 
-template class masonry::Adapter<masonry::MasonryJointGeom, yade::IGeom>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointGeom)
+MASONRY_DEFINE(MasonryJointGeom)
 
 namespace masonry {
 

@@ -6,9 +6,7 @@
 namespace masonry {
 
 class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom>, public JointGeometry {
-    MASONRY_DISPATCHED(MasonryJointGeom, yade::IGeom)
-    static constexpr const char* className = "MasonryJointGeom";
-    static constexpr const char* baseName = "IGeom";
+    MASONRY_DISPATCHED(MasonryJointGeom, IGeom)
     static constexpr const char* doc =
         "Joint between two blocks: the polygon that their faces share in the reference state, divided into "
         "subcontacts, and the displacement jumps across it. Displacements are taken as small: a joint stays to the end "
@@ -65,5 +63,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryJointGeom, yade::IGeom>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryJointGeom)
+MASONRY_DECLARE(MasonryJointGeom)

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
+#include "EngineAdapter.hpp"
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "engine/joints/JointPlan.hpp"
 #include "engine/joints/Refinement.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonryJointLoop : public Adapter<MasonryJointLoop, yade::GlobalEngine>, public JointLoop {
-public:
-    static constexpr const char* className = "MasonryJointLoop";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryJointLoop : public EngineAdapter<MasonryJointLoop>, public JointLoop {
+    MASONRY_CLASS(MasonryJointLoop, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Joints;
     static constexpr const char* doc =
         "A step of all masonry joints, in columns and on all threads. Stands in the place of InteractionLoop, which "
@@ -71,8 +69,7 @@ public:
                          "Number of joints that have more points than they were made with; see points.");
     }
 
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 
 private:
     int groups() const;
@@ -86,5 +83,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryJointLoop)
+MASONRY_DECLARE(MasonryJointLoop)

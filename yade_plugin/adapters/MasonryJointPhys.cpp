@@ -2,8 +2,7 @@
 #include "MasonryJointPhys.hpp"
 #include "engine/store/SceneStore.hpp"
 
-template class masonry::Adapter<masonry::MasonryJointPhys, yade::IPhys>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)
+MASONRY_DEFINE(MasonryJointPhys)
 
 namespace masonry {
 

@@ -6,9 +6,7 @@
 namespace masonry {
 
 class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys>, public JointPhysics {
-    MASONRY_DISPATCHED(MasonryJointPhys, yade::IPhys)
-    static constexpr const char* className = "MasonryJointPhys";
-    static constexpr const char* baseName = "IPhys";
+    MASONRY_DISPATCHED(MasonryJointPhys, IPhys)
     static constexpr const char* doc =
         "State of a joint: the property set that it shares with others of its kind, its stiffness, which includes that "
         "of rigid units, and the state of every subcontact. Opening and tension are positive.";
@@ -80,5 +78,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryJointPhys, yade::IPhys>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryJointPhys)
+MASONRY_DECLARE(MasonryJointPhys)

@@ -4,8 +4,7 @@
 #include <mutex>
 #include <new>
 
-template class masonry::Adapter<masonry::MasonryMat, yade::Material>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryMat)
+MASONRY_DEFINE(MasonryMat)
 
 namespace masonry {
 

@@ -6,9 +6,7 @@
 namespace masonry {
 
 class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMaterial, public Assumptions {
-    MASONRY_DISPATCHED(MasonryMat, yade::Material)
-    static constexpr const char* className = "MasonryMat";
-    static constexpr const char* baseName = "Material";
+    MASONRY_DISPATCHED(MasonryMat, Material)
     static constexpr ClassRole declares = ClassRole::Material;
     static constexpr const char* doc =
         "Material of a masonry unit, which deforms elastically between the joints. Its density [kg/m³] is that of "
@@ -42,5 +40,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryMat, yade::Material>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryMat)
+MASONRY_DECLARE(MasonryMat)

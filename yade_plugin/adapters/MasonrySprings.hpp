@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/connectors/Springs.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonrySprings : public Adapter<MasonrySprings, yade::GlobalEngine>, public Springs {
-public:
-    static constexpr const char* className = "MasonrySprings";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonrySprings : public EngineAdapter<MasonrySprings>, public Springs {
+    MASONRY_CLASS(MasonrySprings, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Connectors;
     static constexpr const char* doc = "Linear springs between points of two rigid bodies, or of one and the ground, "
                                        "along and about the global axes. They "
@@ -29,11 +26,9 @@ public:
     }
 
     using Springs::problems;
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 };
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonrySprings, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonrySprings)
+MASONRY_DECLARE(MasonrySprings)

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/connectors/Ties.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonryTies : public Adapter<MasonryTies, yade::GlobalEngine>, public Ties {
-public:
-    static constexpr const char* className = "MasonryTies";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryTies : public EngineAdapter<MasonryTies>, public Ties {
+    MASONRY_CLASS(MasonryTies, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Connectors;
     static constexpr const char* doc =
         "Bars between points of two rigid bodies, or of one and the ground: elastic, yielding at a force, breaking at "
@@ -49,8 +46,7 @@ public:
         Adapter::check();
         forgetReference();
     }
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 
 private:
     double forceOf(int tie);
@@ -58,5 +54,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryTies, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryTies)
+MASONRY_DECLARE(MasonryTies)

@@ -39,8 +39,7 @@ public:
 };
 } // namespace vtk::detail::smp
 
-template class masonry::Adapter<masonry::MasonryVtkRecorder, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryVtkRecorder)
+MASONRY_DEFINE(MasonryVtkRecorder)
 
 namespace masonry {
 

@@ -8,9 +8,7 @@ class vtkPolyData;
 namespace masonry {
 
 class MasonryVtkRecorder : public Adapter<MasonryVtkRecorder, yade::GlobalEngine> {
-public:
-    static constexpr const char* className = "MasonryVtkRecorder";
-    static constexpr const char* baseName = "GlobalEngine";
+    MASONRY_CLASS(MasonryVtkRecorder, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Recorder;
     static constexpr const char* doc =
         "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action, and "
@@ -65,5 +63,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryVtkRecorder, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryVtkRecorder)
+MASONRY_DECLARE(MasonryVtkRecorder)

@@ -2,10 +2,8 @@
 #include "MasonryZones.hpp"
 #include "engine/joints/CrackedBricks.hpp"
 #include "engine/joints/JointFunctor.hpp"
-#include "engine/watch/EngineScope.hpp"
 
-template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)
+MASONRY_DEFINE(MasonryZones)
 
 namespace masonry {
 
@@ -14,12 +12,10 @@ void MasonryZones::postLoad() {
     divideAnew();
 }
 
-void MasonryZones::action() {
-    const EngineScope scope(*scene, *this);
-    if (!scope->loop) gatherFromFunctors(scope->joints, *this);
-    followMasses(newlyCracked(*this, scope->kinds));
-    advance(*scene, scope->bodies, scope->gravity(), scope->massDamping());
-    scope.end();
+void MasonryZones::step(SceneStore& store) {
+    if (!store.loop) gatherFromFunctors(store.joints, *this);
+    followMasses(newlyCracked(*this, store.kinds));
+    advance(*scene, store.bodies, store.gravity(), store.massDamping());
 }
 
 py::tuple MasonryZones::nodesOf(int body) {

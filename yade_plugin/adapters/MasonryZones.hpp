@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Adapter.hpp"
+#include "EngineAdapter.hpp"
 #include "engine/units/Zones.hpp"
-#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
-class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine>, public Zones {
-public:
-    static constexpr const char* className = "MasonryZones";
-    static constexpr const char* baseName = "GlobalEngine";
+class MasonryZones : public EngineAdapter<MasonryZones>, public Zones {
+    MASONRY_CLASS(MasonryZones, GlobalEngine)
     static constexpr ClassRole declares = ClassRole::Units;
     static constexpr const char* doc =
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
@@ -87,8 +84,7 @@ public:
 
     using Zones::problems;
     void postLoad();
-    bool isActivated() override { return standsAlone(*this); }
-    void action() override;
+    void step(SceneStore&);
 
 private:
     py::tuple nodesOf(int body);
@@ -99,5 +95,4 @@ private:
 
 } // namespace masonry
 
-extern template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
-BOOST_CLASS_EXPORT_KEY(masonry::MasonryZones)
+MASONRY_DECLARE(MasonryZones)

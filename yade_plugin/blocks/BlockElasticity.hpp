@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Linear elasticity of a meshed block (paper §2): zones of constant strain and masses lumped at the nodes. Strains are
-// small, but the block may turn: strains and stresses are computed in axes that turn with it. Congruent blocks share
-// one object, and the forces of several of them are computed at a time (BlockLanes.hpp).
+// small, in axes that turn with the block. Congruent blocks share one object, and the forces of several of them are
+// computed at a time (BlockLanes.hpp).
 #pragma once
 #include "BlockLanes.hpp"
 #include "BlockMesh.hpp"
@@ -12,10 +12,10 @@ using Matrix3 = Eigen::Matrix3d;
 
 class BlockElasticity {
 public:
-    // Throws std::invalid_argument, which says what is wrong, unless E > 0, -1 < nu < 0.5 and density > 0.
-    // `held` is the direction (0, 1 or 2) in which no node can move, or -1 if there is none. Normal stress in this
-    // direction is zero (plane stress), although the nodes are held, and the block turns about it only. A mesh of a
-    // plane unit needs the direction across its plane here. Its zones are its triangles, as thick as the unit.
+    // Throws std::invalid_argument unless E > 0, -1 < nu < 0.5 and density > 0. `held` is the direction (0, 1 or 2) in
+    // which no node can move, or -1. Normal stress in this direction is zero (plane stress), although the nodes are
+    // held, and the block turns about it only. For a mesh of a plane unit it is the direction across its plane; its
+    // zones are its triangles, as thick as the unit.
     BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, int held = -1);
 
     const BlockMesh& mesh() const { return mesh_; }
@@ -33,8 +33,7 @@ public:
     // zone and direction j. A triangle has three nodes: what belongs to the fourth is zero.
     Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
 
-    // The stiffness matrix, masses and gradients of the block for the functions of BlockLanes.hpp. It points into this
-    // object and is valid as long as this object exists.
+    // The same for the functions of BlockLanes.hpp. It points into this object.
     BlockMatrix matrix() const;
 
 private:

@@ -54,14 +54,12 @@ void addBlockForces(const BlockMatrix& m, const Row* displacements, const Row* m
     best(m, displacements, moments, forces, rotation, energy, scratch);
 }
 
-void moveBlocks(const BlockMatrix& m, const NodeMotion& motion, const Row& present, Row* displacements, Row* velocities,
-                Row* forces, Row* lastForces, NodeSums& sums) {
+void moveBlocks(const NodeMotion& motion, LaneUnits& units) {
     static const auto best = choose(plain::move, avx2::move, avx512::move);
-    best(m, motion, present, displacements, velocities, forces, lastForces, sums);
+    best(motion, units);
 }
 
-void moveScaled(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, const Row& whole,
-                Row* scratch) {
+void moveScaled(const NodeMotion& motion, double scaling, LaneUnits* units, int count, const Row& whole, Row* scratch) {
     static const auto best = choose(plain::moveScaledUnits, avx2::moveScaledUnits, avx512::moveScaledUnits);
     best(motion, scaling, units, count, whole, scratch);
 }

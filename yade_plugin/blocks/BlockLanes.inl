@@ -157,16 +157,16 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
     }
 }
 
-void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Row* displacements, Row* velocities,
-          Row* forces, Row* lastForces, NodeSums& sums) {
+void move(const NodeMotion& m, LaneUnits& units) {
+    const BlockMatrix matrix = units.matrix;
     const double alpha = dampingShare(m.combined) * m.damping;
     const double steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
     for (int part = 0; part < parts; ++part) {
-        Lanes* us = at(displacements, part);
-        Lanes* vs = at(velocities, part);
-        Lanes* fs = at(forces, part);
-        Lanes* lasts = at(lastForces, part);
-        const Lanes inUse = *at(&present, part);
+        Lanes* us = at(units.displacements, part);
+        Lanes* vs = at(units.velocities, part);
+        Lanes* fs = at(units.forces, part);
+        Lanes* lasts = at(units.lastForces, part);
+        const Lanes inUse = *at(&units.present, part);
         const Lanes zero = {};
         Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero;
         Lanes moved[3] = {zero, zero, zero};
@@ -200,12 +200,12 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
                 moved[direction] += mass * us[i];
             }
         }
-        *at(&sums.kinetic, part) = kinetic;
-        *at(&sums.gravityWork, part) = gravityWork;
-        *at(&sums.damping, part) = damping;
-        *at(&sums.pending, part) = pending;
+        *at(&units.sums.kinetic, part) = kinetic;
+        *at(&units.sums.gravityWork, part) = gravityWork;
+        *at(&units.sums.damping, part) = damping;
+        *at(&units.sums.pending, part) = pending;
         for (int direction = 0; direction < 3; ++direction)
-            *at(sums.moved + direction, part) = moved[direction];
+            *at(units.sums.moved + direction, part) = moved[direction];
     }
 }
 
@@ -320,19 +320,19 @@ template <class Vectors> inline Vectors weighted(Lanes a, const Vectors& one, La
 }
 
 // What the loops over the nodes of units with scaled masses need, of one part of their lanes. Each phase of ScaledStep
-// has a copy, so that the compiler sees that no node's numbers are among these.
+// has a copy: the compiler then sees that no node's numbers are among these.
 template <bool plane> struct ScaledNodes {
     static constexpr int directions = plane ? 2 : 3;
     const NodeMotion m;
     const double scaling;
-    ScaledUnits* const units;
+    LaneUnits* const units;
     const int count, part;
     Lanes* const kept; // three numbers for every node and direction
     const double alpha, share, apart, steady;
     int direction[3];
     bool free[3], turns[3];
 
-    ScaledNodes(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, Row* scratch, int part)
+    ScaledNodes(const NodeMotion& motion, double scaling, LaneUnits* units, int count, Row* scratch, int part)
         : m(motion),
           scaling(scaling),
           units(units),
@@ -613,7 +613,7 @@ template <bool plane> void ScaledStep<plane>::sumUp() {
 }
 
 template <bool plane>
-void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch) {
+void moveIn(const NodeMotion& m, double scaling, LaneUnits* units, int count, const Row& whole, Row* scratch) {
     for (int part = 0; part < parts; ++part) {
         ScaledStep<plane> step(ScaledNodes<plane>(m, scaling, units, count, scratch, part), whole);
         step.predict();
@@ -623,7 +623,6 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
     }
 }
 
-void moveScaledUnits(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole,
-                     Row* scratch) {
+void moveScaledUnits(const NodeMotion& m, double scaling, LaneUnits* units, int count, const Row& whole, Row* scratch) {
     (units[0].matrix.across >= 0 ? moveIn<true> : moveIn<false>)(m, scaling, units, count, whole, scratch);
 }

@@ -73,6 +73,15 @@ void checkDivisions(const std::array<int, 3>& divisions) {
         if (n < 1 || n > 100) throw std::invalid_argument("divisions " + std::to_string(n) + " must be 1 to 100");
 }
 
+// Throws if a zone with this volume or area is inverted, or a sliver.
+void checkZone(double content, double height, double longestEdge, double sliver) {
+    if (!(content > 0)) throw std::invalid_argument("block has an inverted zone: not convex, or without volume");
+    if (height < sliver * longestEdge)
+        throw std::invalid_argument("block has a sliver zone, height " + std::to_string(height) +
+                                    " m beside an edge of " + std::to_string(longestEdge) +
+                                    " m: choose other divisions");
+}
+
 // The corners of the middle plane of a right prism along the direction `across`, in the order of its base, counter-
 // clockwise about this direction. Empty if the block is no such prism.
 std::vector<Point> middleOfPrism(const ConvexBlock& block, int across, double& thickness) {
@@ -156,11 +165,7 @@ std::optional<BlockMesh> divideInPlane(const ConvexBlock& block, const std::arra
             longest = std::max(longest, (mesh.nodes[t[(i + 1) % 3]] - mesh.nodes[t[i]]).norm());
         const double twice =
             (mesh.nodes[t[1]] - mesh.nodes[t[0]]).cross(mesh.nodes[t[2]] - mesh.nodes[t[0]])[across]; // area [m²]
-        if (!(twice > 0)) throw std::invalid_argument("block has an inverted zone: not convex, or without volume");
-        if (twice / longest < sliver * longest)
-            throw std::invalid_argument("block has a sliver zone, height " + std::to_string(twice / longest) +
-                                        " m beside an edge of " + std::to_string(longest) +
-                                        " m: choose other divisions");
+        checkZone(twice, twice / longest, longest, sliver);
     }
     return mesh;
 }
@@ -245,11 +250,7 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
             largest = std::max(largest,
                                0.5 * (c[(i + 1) % 4] - c[(i + 2) % 4]).cross(c[(i + 3) % 4] - c[(i + 2) % 4]).norm());
         const double inside = volume(c);
-        if (!(inside > 0)) throw std::invalid_argument("block has an inverted zone: not convex, or without volume");
-        if (3 * inside / largest < sliver * longest)
-            throw std::invalid_argument("block has a sliver zone, height " + std::to_string(3 * inside / largest) +
-                                        " m beside an edge of " + std::to_string(longest) +
-                                        " m: choose other divisions");
+        checkZone(inside, 3 * inside / largest, longest, sliver);
     }
     return mesh;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A convex block divided into tetrahedral zones (paper §2: deformable blocks), or, as a plane unit, into triangles of
-// its middle plane. Pure geometry.
+// its middle plane.
 #pragma once
 #include "FaceContact.hpp"
 #include <optional>
@@ -24,13 +24,13 @@ struct BlockMesh {
 
 // Divides a block into zones.
 //
-// A hexahedron is first divided into cells: `divisions` says how many along those of its edges that lie nearest to x, y
-// and z. Twelve zones make up a cell. Each has its apex at the centre of the cell and its base on one half of one of
-// the six faces of the cell. The diagonals that halve neighbouring faces alternate; faces across x and z that lie
-// behind one another have the same diagonals, so that blocks laid in courses meet node to node, with equal triangles.
+// A hexahedron is first divided into cells: `divisions` along those of its edges that lie nearest to x, y and z. Twelve
+// zones make up a cell, each with its apex at the centre of the cell and its base on one half of a face. The diagonals
+// that halve neighbouring faces alternate; faces across x and z that lie behind one another have the same diagonals, so
+// that blocks laid in courses meet node to node, with equal triangles.
 //
-// Any other convex block is divided about the mean of its vertices, with one zone for each triangle of its surface;
-// `divisions` then has no effect.
+// Any other convex block has one zone for each triangle of its surface, about the mean of its vertices, whatever
+// `divisions`.
 //
 // Throws std::invalid_argument if the block has no volume, is not convex, or gets a sliver: a zone whose smallest
 // height is less than `sliver` times its longest edge.

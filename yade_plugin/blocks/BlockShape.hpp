@@ -18,9 +18,8 @@ struct BlockShape {
 
 // The convex block around points. Throws std::invalid_argument if they have no volume around them.
 //
-// Order of corners, faces and sums is that of YADE's Polyhedra, so that both kinds of block give the same bits. Blocks
-// of more than 14 points are the exception: a Polyhedra of them is not equal to the bit to another one of the same
-// points.
+// Order of corners, faces and sums is that of YADE's Polyhedra, so that both kinds of block give the same bits, up to
+// 14 points: a Polyhedra of more is not equal to the bit to another one of the same points.
 BlockShape blockAround(const std::vector<Point>& points);
 
 } // namespace masonry

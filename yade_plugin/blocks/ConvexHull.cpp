@@ -45,8 +45,8 @@ bool removeOneEdge(Surface& surface, const std::map<const Surface::Facet*, Eigen
 }
 
 // CGAL takes some vertices and facets in the order of their addresses. The first 14 of each stand in one piece of
-// memory, in the order in which they were made; from there on the order is one of chance. The hull of so many points
-// has 12 triangles at most.
+// memory, in the order in which they were made; the order of others is one of chance. The hull of so many points has 12
+// triangles at most.
 constexpr std::size_t orderedVertices = 8;
 
 // Numbers the corners in the order of the given points, and puts the faces in the order of their corners.

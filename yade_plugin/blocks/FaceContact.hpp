@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon. This is
-// pure geometry: all points are in one common coordinate system [m].
+// Joints between convex blocks: where two faces coincide, in a polygon. All points are in one common coordinate system
+// [m].
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -22,8 +22,7 @@ struct ConvexBlock {
     std::vector<Polygon> faces() const; // one polygon for all triangles that lie in one plane
 };
 
-// A convex block with its faces, normals and sizes, computed once: finding joints compares a block with each of its
-// neighbours.
+// A convex block with its faces, normals and sizes, computed once: it is compared with each of its neighbours.
 struct KnownBlock : ConvexBlock {
     // Throws std::invalid_argument if the block is not convex, or if its triangles run the wrong way round.
     KnownBlock(ConvexBlock block);

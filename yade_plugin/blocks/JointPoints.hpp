@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Subcontacts: the points of a joint at which its law is followed, each with its share of the joint's area. Sums over
-// subcontacts stand for integrals over the joint, so points and shares are those of a quadrature.
+// them stand for integrals over the joint: points and shares are those of a quadrature.
 //
 // Where blocks rock, a joint opens about its edge. So its edges and corners have points of their own, which the rule of
 // Gauss and Lobatto gives. With points at the centres of n equal parts a joint would open fully about its edge at

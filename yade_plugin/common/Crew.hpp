@@ -3,9 +3,9 @@
 //
 // A step has a handful of loops of some ten microseconds each, so a thread must begin within a microsecond, and must
 // not keep the others waiting when it has no core. Each thread has a share of the loop, the same part in every step,
-// whose numbers are then in its cache. Who has finished takes pieces of the others' shares. So the caller can do the
-// whole loop alone if no other thread comes in time, and it waits for pieces alone that another thread has begun.
-// Threads with nothing to do look for work for a short while, and then sleep.
+// whose numbers are then in its cache, and then takes pieces of the others' shares. So the caller can do the whole loop
+// alone if no other thread comes in time, and waits only for pieces that another thread has begun. Threads with nothing
+// to do look for work for a short while, and then sleep.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -39,7 +39,7 @@ public:
 private:
     struct alignas(64) Share {
         // Three numbers in 48, 8 and 8 bits: the loop, the first portion that nobody has taken, and the end of the
-        // portions. A thread that comes late finds the number of another loop, and takes nothing.
+        // portions. A thread that comes late finds another loop, and takes nothing.
         std::atomic<std::uint64_t> next{0};
     };
 

@@ -8,8 +8,7 @@
 #include <cstring>
 
 // As many bytes as the vector units take that a file is compiled for: the compiler splits wider packs into single
-// numbers. A file that is compiled for vector units which not every processor has defines this before it includes
-// Pack.hpp.
+// numbers. A file for vector units which not every processor has defines this before it includes Pack.hpp.
 #ifndef MASONRY_PACK_BYTES
 #define MASONRY_PACK_BYTES 16
 #endif

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Parallel.hpp"
-#include "Crew.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -131,22 +130,14 @@ void Parallel::stepBegins() {
     timed_ = --until_ <= 0;
 }
 
-void Parallel::run(const Span& all) {
+void Parallel::run(const Crew::Loop& all) {
     const int threads = always_ ? allowed_ : choice_.threads();
     const auto began = timed_ ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-    if (threads == 1 || all.count <= all.piece)
-        all.call(all.body, 0, all.count);
+    if (threads == 1 || all.pieces <= 1)
+        all.call(all.of, 0, all.pieces);
     else
-        runOnThreads(all, threads);
+        crew_->run(all, threads);
     if (timed_) spent_ += std::chrono::steady_clock::now() - began;
-}
-
-void Parallel::runOnThreads(const Span& all, int threads) {
-    const auto pieces = [](const void* of, int first, int beyond) {
-        const auto& span = *static_cast<const Span*>(of);
-        span.call(span.body, first * span.piece, std::min(span.count, beyond * span.piece));
-    };
-    crew_->run({&all, pieces, (all.count + all.piece - 1) / all.piece}, threads);
 }
 
 } // namespace masonry

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Loops of a step on several threads, if that is quicker than on one.
 //
-// Whether it is depends on the size of the scene and on what else the machine does: where other programs use all cores,
-// a step on two threads takes several times as long as on one, because whichever thread has no core keeps the other
-// waiting. No rule can know that beforehand, so it is measured while the run goes on. All loops give the same bits on
-// any number of threads, so this number may change from one step to the next.
+// That depends on the scene and on what else the machine does: where other programs use all cores, a step on two
+// threads takes several times as long as on one, because a thread without a core keeps the other waiting. So it is
+// measured while the run goes on. All loops give the same bits on any number of threads, which may change from step to
+// step.
 #pragma once
+#include "Crew.hpp"
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -52,8 +54,6 @@ private:
     int confirmed_ = 0; // how many trials have found no better number since the last change
 };
 
-class Crew;
-
 class Parallel {
 public:
     static Parallel& instance();
@@ -72,19 +72,14 @@ public:
     // Calls body(first, beyond) for the pieces of the numbers from 0 to count - 1, each with `piece` of them but the
     // last. Any thread may take any piece, so the body must give the same result in any order.
     template <class Body> void overPieces(int count, int piece, const Body& body) {
-        const Span all{count, piece, &body,
-                       [](const void* of, int first, int beyond) { (*static_cast<const Body*>(of))(first, beyond); }};
-        run(all);
+        const auto pieces = [&](int first, int beyond) { body(first * piece, std::min(count, beyond * piece)); };
+        run({&pieces,
+             [](const void* of, int first, int beyond) { (*static_cast<decltype(&pieces)>(of))(first, beyond); },
+             (count + piece - 1) / piece});
     }
 
 private:
-    struct Span {
-        int count, piece;
-        const void* body;
-        void (*call)(const void* body, int first, int beyond);
-    };
-    void run(const Span&);
-    void runOnThreads(const Span&, int threads);
+    void run(const Crew::Loop&);
 
     Crew* crew_ = nullptr; // never destroyed: its threads may be at work when the process ends
     int allowed_ = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The description of a property: unit, bounds, meaning, source. The check of a value, Python's documentation, the hints
-// about units, files and run.json all read this one description.
+// The description of a property: unit, bounds, meaning, source. Checks, Python's documentation, hints about units,
+// files and run.json all read it.
 #pragma once
 #include "common/Text.hpp"
 #include <algorithm>
@@ -35,33 +35,37 @@ struct Property {
     double usualLow = -infinity, usualHigh = infinity; // a value outside of these is probably in `otherUnit`
     const char* otherUnit = "";
 
-    constexpr Property above(double bound) const {
-        return changed([&](Property& p) {
-            p.low = bound;
-            p.lowExcluded = true;
-        });
-    }
     constexpr Property atLeast(double bound) const {
-        return changed([&](Property& p) { p.low = bound; });
+        Property p = *this;
+        p.low = bound;
+        return p;
     }
-    constexpr Property below(double bound) const {
-        return changed([&](Property& p) {
-            p.high = bound;
-            p.highExcluded = true;
-        });
+    constexpr Property above(double bound) const {
+        Property p = atLeast(bound);
+        p.lowExcluded = true;
+        return p;
     }
     constexpr Property atMost(double bound) const {
-        return changed([&](Property& p) { p.high = bound; });
+        Property p = *this;
+        p.high = bound;
+        return p;
+    }
+    constexpr Property below(double bound) const {
+        Property p = atMost(bound);
+        p.highExcluded = true;
+        return p;
     }
     constexpr Property source(const char* where) const {
-        return changed([&](Property& p) { p.from = where; });
+        Property p = *this;
+        p.from = where;
+        return p;
     }
     constexpr Property usually(double lowest, double highest, const char* unitOtherwise) const {
-        return changed([&](Property& p) {
-            p.usualLow = lowest;
-            p.usualHigh = highest;
-            p.otherUnit = unitOtherwise;
-        });
+        Property p = *this;
+        p.usualLow = lowest;
+        p.usualHigh = highest;
+        p.otherUnit = unitOtherwise;
+        return p;
     }
 
     bool isNumber() const { return unit != nullptr; }
@@ -96,13 +100,6 @@ struct Property {
         const bool tooHigh = value > high || (highExcluded && value == high);
         return tooLow || tooHigh ? shown + bounds() : "";
     }
-
-private:
-    template <class Change> constexpr Property changed(Change&& change) const {
-        Property copy = *this;
-        change(copy);
-        return copy;
-    }
 };
 
 // What is wrong with a property, or with some that do not go together.
@@ -120,17 +117,15 @@ struct WrongProperties : std::invalid_argument {
         : std::invalid_argument(message), problems(std::move(problems)) {}
 };
 
-constexpr Property number(const char* unit, const char* meaning) {
-    Property p;
-    p.unit = unit;
-    p.meaning = meaning;
-    return p;
-}
-
 // For what is not a number: a text, a switch, a list or an object.
 constexpr Property described(const char* meaning) {
     Property p;
     p.meaning = meaning;
+    return p;
+}
+constexpr Property number(const char* unit, const char* meaning) {
+    Property p = described(meaning);
+    p.unit = unit;
     return p;
 }
 

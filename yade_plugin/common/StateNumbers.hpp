@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The one visitor of saved state. O.save(), checkpoints and the comparison of a scene with a checkpoint see the numbers
-// of a state one after another. A class says once which numbers these are, and in which order:
+// The one visitor of saved state: O.save(), checkpoints and the comparison of a scene with a checkpoint. A class says
+// once which numbers its state has, and in which order:
 //
 //   template <class Visit> void visitState(Visit&& visit) { visit(position, touches, pairs); }
 //
-// The same function writes and reads them, so no width and no place of a number stands anywhere.
+// The same function writes and reads them.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How inner loops use the vector units of a processor. A function marked MASONRY_VECTORISED is compiled for several
-// instruction sets, and the program takes the best one that the processor has when it starts. All give the same
-// numbers, because the project is built without contraction of products and sums.
+// instruction sets, and the program takes the best one that the processor has. All give the same numbers, because the
+// project is built without contraction of products and sums.
 #pragma once
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -18,11 +18,11 @@
 #define MASONRY_VECTOR_UNITS 0
 #endif
 
-// A function that is compiled into its callers, so that it uses the instruction set of a vectorised one.
+// A function that uses the instruction set of the vectorised one that calls it.
 #define MASONRY_INLINED [[gnu::always_inline]] inline
 
-// Stands before a loop whose iterations do not depend on each other. The compiler cannot know that by itself, because
-// pointers might lead to the same memory.
+// Stands before a loop whose iterations do not depend on each other, which the compiler cannot know: pointers might
+// lead to the same memory.
 #if defined(__GNUC__) && !defined(__clang__)
 #define MASONRY_INDEPENDENT _Pragma("GCC ivdep")
 #else

@@ -37,17 +37,17 @@ std::vector<std::pair<int, int>> overlappingBoxes(const std::vector<Box>& boxes,
     std::vector<int> order(boxes.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int a, int b) {
-        const double x = boxes[std::size_t(a)].low[axis], y = boxes[std::size_t(b)].low[axis];
+        const double x = boxes[a].low[axis], y = boxes[b].low[axis];
         return x != y ? x < y : a < b;
     });
     std::vector<std::pair<int, int>> found;
     std::vector<int> open, openAwake; // boxes that the sweep has entered: all, and those that are awake
     for (int b : order) {
-        const Box& box = boxes[std::size_t(b)];
+        const Box& box = boxes[b];
         const auto meet = [&](std::vector<int>& others) {
             std::size_t kept = 0;
             for (int other : others) {
-                const Box& o = boxes[std::size_t(other)];
+                const Box& o = boxes[other];
                 if (o.high[axis] < box.low[axis]) continue; // the sweep has passed it
                 others[kept++] = other;
                 if (o.low[second] <= box.high[second] && box.low[second] <= o.high[second] &&
@@ -58,7 +58,7 @@ std::vector<std::pair<int, int>> overlappingBoxes(const std::vector<Box>& boxes,
         };
         // What sleeps meets only what is awake.
         meet(openAwake);
-        if (awake[std::size_t(b)]) {
+        if (awake[b]) {
             meet(open);
             openAwake.push_back(b);
         } else

@@ -11,7 +11,7 @@ struct Box {
 };
 
 // All pairs of overlapping boxes, one of which at least is awake, the smaller number first, sorted. Boxes that share a
-// boundary overlap. Where the boxes are changes the time that it takes, and nothing else.
+// boundary overlap.
 std::vector<std::pair<int, int>> overlappingBoxes(const std::vector<Box>&, const std::vector<unsigned char>& awake);
 
 } // namespace masonry

@@ -74,9 +74,7 @@ ContactBlock contactBlock(const std::vector<Vector>& corners, const std::vector<
     for (const auto& face : block.faces)
         for (int k = face.first; k < face.beyond; ++k) {
             const int next = k + 1 < face.beyond ? k + 1 : face.first;
-            const Vector edge = (corners[std::size_t(block.outlines[std::size_t(next)])] -
-                                 corners[std::size_t(block.outlines[std::size_t(k)])])
-                                    .normalized();
+            const Vector edge = (corners[block.outlines[next]] - corners[block.outlines[k]]).normalized();
             const auto parallel = [&](const Vector& known) { return known.cross(edge).norm() < 1e-9; };
             if (std::none_of(block.edges.begin(), block.edges.end(), parallel)) block.edges.push_back(edge);
         }

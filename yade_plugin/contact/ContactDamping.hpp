@@ -5,8 +5,8 @@
 
 namespace masonry {
 
-// The damping ratio of a mass on a spring and a dashpot, which leaves an obstacle when their force is zero, after an
-// impact with this restitution, above 0 and at most 1. Ratios are found to 1e-12.
+// The damping ratio with which a mass on a spring and a dashpot, which leaves an obstacle when their force is zero, has
+// this restitution of an impact, above 0 and at most 1; to 1e-12.
 double dampingRatio(double restitution);
 
 // The restitution with this damping ratio.

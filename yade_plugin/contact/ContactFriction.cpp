@@ -37,7 +37,8 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
     const Vector& normal = overlap.normal;
     FrictionStep step{Vector::Zero(), 0, 0, 0};
     Vector shear = state.shear, slip = Vector::Zero();
-    double twist = state.twist, spin = 0, soft = 0;
+    double twist = state.twist, spin = 0;
+    const double soft = 0.5 / stiffness; // [m/N] energy over the square of a force
     if (state.stiffness > 0) {
         const Vector& last = state.normal;
         if (last.dot(normal) < -0.5) { // the contact is another one
@@ -63,11 +64,9 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
             const double energy = elasticEnergyOf(state), share = std::min(1.0, stiffness / state.stiffness);
             shear *= share;
             twist *= share;
-            soft = 0.5 / stiffness;
             step.lost += std::max(0.0, energy - soft * (shear.squaredNorm() + twist * twist));
         }
     }
-    soft = 0.5 / stiffness;
     if (const double size = std::sqrt(shear.squaredNorm() + twist * twist); size > limit) {
         // The normal force has fallen: the elastic slip is cut to the limit.
         step.lost += soft * (size - limit) * (size + limit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Coulomb friction of two blocks, with the memory of an elastic slip and an elastic twist. The rules are derived in
+// Coulomb friction of two blocks, with the memory of an elastic slip and an elastic twist; derived in
 // contact/README.md.
 #pragma once
 #include "Overlap.hpp"

@@ -71,10 +71,11 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
         countLastPush(blocks, dt, account);
         if (!cameByThemselves(blocks, dt, memory.friction)) account.push = Wrench();
     }
+    const auto potential =
+        effect.touches ? wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment)
+                       : Wrench();
     if (!(effect.touches && overlap.area > 0)) {
-        effect.wrench =
-            effect.touches ? wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment)
-                           : Wrench();
+        effect.wrench = potential;
         if (!effect.touches && memory.touched())
             effect.acts = endOn(blocks, memory.friction.normal, dt, account, effect.wrench);
         effect.lost += endFriction(memory.friction);
@@ -83,7 +84,6 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
         account.excess = excess;
         return;
     }
-    const auto potential = wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment);
     double power;
     const auto dashpot = damp(law, blocks, overlap, power);
     memory.dashpot = dashpot;

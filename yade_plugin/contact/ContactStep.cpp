@@ -10,13 +10,12 @@ double embeddedEigenvalue(const ContactBlock& block, double mass, const Eigen::V
     using Matrix6 = Eigen::Matrix<double, 6, 6>;
     Matrix6 stiffness = Matrix6::Zero();
     const auto at = [&](int corner) {
-        return Vector(block.corners[0][std::size_t(corner)], block.corners[1][std::size_t(corner)],
-                      block.corners[2][std::size_t(corner)]);
+        return Vector(block.corners[0][corner], block.corners[1][corner], block.corners[2][corner]);
     };
     for (const auto& face : block.faces) {
         const Eigen::Matrix3d law = tangentialStiffness * Eigen::Matrix3d::Identity() +
                                     (normalStiffness - tangentialStiffness) * face.normal * face.normal.transpose();
-        const auto outline = [&](int k) { return at(block.outlines[std::size_t(k)]); };
+        const auto outline = [&](int k) { return at(block.outlines[k]); };
         for (int k = face.first + 2; k < face.beyond; ++k) {
             const Vector p[3] = {outline(face.first), outline(k - 1), outline(k)};
             const double area = 0.5 * face.normal.dot((p[1] - p[0]).cross(p[2] - p[0]));

@@ -16,6 +16,9 @@ constexpr double tiny = 1e-14;
 constexpr int mostEdgePairs = 400;
 constexpr double leastAxis = 1e-12; // square of the sine between two edges below which they count as parallel
 
+PlainVector plain(const Vector& v) { return {v[0], v[1], v[2]}; }
+Vector eigen(const PlainVector& v) { return {v.x, v.y, v.z}; }
+
 // How far the corners of a block reach along a direction, in its own axes [m times the length of the direction].
 double reachAlong(const ContactBlock& block, const Vector& direction) {
     const double *x = block.corners[0].data(), *y = block.corners[1].data(), *z = block.corners[2].data();
@@ -32,17 +35,17 @@ double gapAlong(const ContactBlock& one, const ContactBlock& other, const Relati
     length = 1;
     const auto gap = [&](const Vector& d, double ofOne, double ofOther) { return d.dot(pose.place) - ofOne - ofOther; };
     if (axis < faces) {
-        const auto& face = one.faces[std::size_t(axis)];
+        const auto& face = one.faces[axis];
         return gap(face.normal, face.offset, reachAlong(other, -(pose.turn.transpose() * face.normal)));
     }
     if (axis < all) {
-        const auto& face = other.faces[std::size_t(axis - faces)];
+        const auto& face = other.faces[axis - faces];
         const Vector d = -(pose.turn * face.normal);
         return gap(d, reachAlong(one, d), face.offset);
     }
     const int others = int(other.edges.size());
     if (pair >= int(one.edges.size()) * others) return -HUGE_VAL;
-    const Vector d = one.edges[std::size_t(pair / others)].cross(pose.turn * other.edges[std::size_t(pair % others)]);
+    const Vector d = one.edges[pair / others].cross(pose.turn * other.edges[pair % others]);
     if (d.squaredNorm() < leastAxis) return -HUGE_VAL;
     length = d.norm();
     const Vector back = pose.turn.transpose() * d;
@@ -78,33 +81,25 @@ void OverlapFinder::place(const ContactBlock& one, const ContactBlock& other, co
     one_.least = other_.least = HUGE_VAL;
     tolerance_ = tiny * (one.radius + other.radius);
     for (int i = 0; i < one.cornerCount(); ++i)
-        one_.corners[std::size_t(i)] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
-    for (int f = 0; f < one.faceCount(); ++f) {
-        const auto& face = one.faces[std::size_t(f)];
-        one_.planes[std::size_t(f)] = {face.normal[0], face.normal[1], face.normal[2], face.offset};
-    }
-    const Matrix& r = pose.turn;
-    const Vector& t = pose.place;
-    for (int i = 0; i < other.cornerCount(); ++i) {
-        const double x = other.corners[0][i], y = other.corners[1][i], z = other.corners[2][i];
-        other_.corners[std::size_t(i)] = {t[0] + (r(0, 0) * x + r(0, 1) * y + r(0, 2) * z),
-                                          t[1] + (r(1, 0) * x + r(1, 1) * y + r(1, 2) * z),
-                                          t[2] + (r(2, 0) * x + r(2, 1) * y + r(2, 2) * z)};
-    }
+        one_.corners[i] = vectorAt(one.corners, i);
+    for (int f = 0; f < one.faceCount(); ++f)
+        one_.planes[f] = {plain(one.faces[f].normal), one.faces[f].offset};
+    const PlainVector r[3] = {plain(pose.turn.row(0)), plain(pose.turn.row(1)), plain(pose.turn.row(2))};
+    const PlainVector place = plain(pose.place);
+    const auto turned = [&](const PlainVector& v) { return PlainVector{dot(r[0], v), dot(r[1], v), dot(r[2], v)}; };
+    for (int i = 0; i < other.cornerCount(); ++i)
+        other_.corners[i] = place + turned(vectorAt(other.corners, i));
     for (int f = 0; f < other.faceCount(); ++f) {
-        const auto& face = other.faces[std::size_t(f)];
-        const double x = face.normal[0], y = face.normal[1], z = face.normal[2];
-        const double a = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z, b = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z;
-        const double c = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z;
-        other_.planes[std::size_t(f)] = {a, b, c, face.offset + (a * t[0] + b * t[1] + c * t[2])};
+        const PlainVector normal = turned(plain(other.faces[f].normal));
+        other_.planes[f] = {normal, other.faces[f].offset + dot(normal, place)};
     }
 }
 
 // Finds the depths of all corners of a block below one face of the opposite block, and whether none is below it.
 bool OverlapFinder::separates(const Side& of, Side& from, int face) {
     const int count = from.block->cornerCount();
-    const Plane plane = of.planes[std::size_t(face)];
-    double* depths = &from.depths[std::size_t(face * count)];
+    const Plane plane = of.planes[face];
+    double* depths = &from.depths[face * count];
     const Corner* corners = from.corners.data();
     double deepest = -HUGE_VAL;
     for (int i = 0; i < count; ++i) {
@@ -124,12 +119,12 @@ bool OverlapFinder::edgesSeparate(const RelativePose& pose, int edges) const {
     const Vector axis = one_.block->edges[std::size_t(edges) / others.size()].cross(
         pose.turn * others[std::size_t(edges) % others.size()]);
     if (axis.squaredNorm() < leastAxis) return false;
+    const PlainVector direction = plain(axis);
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int side = 0; side < 2; ++side) {
         const Side& s = side ? other_ : one_;
         for (int i = 0; i < s.block->cornerCount(); ++i) {
-            const auto& p = s.corners[std::size_t(i)];
-            const double along = axis[0] * p.x + axis[1] * p.y + axis[2] * p.z;
+            const double along = dot(direction, s.corners[i]);
             low[side] = std::min(low[side], along);
             high[side] = std::max(high[side], along);
         }
@@ -158,7 +153,7 @@ bool OverlapFinder::cut(const Plane& plane, bool kept) {
             // From the inner corner, so that neighbouring parts have the same point.
             const Corner &in = s > 0 ? from[i] : from[next], &out = s > 0 ? from[next] : from[i];
             const double share = (s > 0 ? s : t) / (s > 0 ? s - t : t - s);
-            to[count++] = {in.x + share * (out.x - in.x), in.y + share * (out.y - in.y), in.z + share * (out.z - in.z)};
+            to[count++] = in + share * (out - in);
         }
     }
     polygon_.swap(spare_);
@@ -167,7 +162,7 @@ bool OverlapFinder::cut(const Plane& plane, bool kept) {
 }
 
 int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
-    const auto& outline = of.block->faces[std::size_t(face)];
+    const auto& outline = of.block->faces[face];
     const int* numbers = of.block->outlines.data();
     const int corners = of.block->cornerCount(), planes = inside.block->faceCount();
     double bound = HUGE_VAL; // no point of the face is deeper inside the opposite block
@@ -182,8 +177,8 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
         }
         if (high <= tolerance_) return false;
         bound = std::min(bound, high);
-        least_[std::size_t(j)] = low;
-        if (low < -tolerance_) nearest_[std::size_t(cutting++)] = j;
+        least_[j] = low;
+        if (low < -tolerance_) nearest_[cutting++] = j;
         return true;
     };
     // Most faces look away, and lie outside this plane.
@@ -192,17 +187,17 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
         if (j != of.shallow && !look(j)) return 0;
     size_ = 0;
     for (int k = outline.first; k < outline.beyond; ++k)
-        corner(size_++) = of.corners[std::size_t(numbers[k])];
+        corner(size_++) = of.corners[numbers[k]];
     for (int c = 0; c < cutting; ++c)
-        if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return 0;
+        if (!cut(inside.planes[nearest_[c]], false)) return 0;
     // Which faces of the opposite block can be the nearest one: those below which some point is less deep than all
     // points are below some other face.
     // Of two that are equally deep everywhere it is the first.
     int count = 0, first = 0;
     double highest = HUGE_VAL;
     for (int j = 0; j < planes; ++j) {
-        if (least_[std::size_t(j)] > bound) continue;
-        const Plane& plane = inside.planes[std::size_t(j)];
+        if (least_[j] > bound) continue;
+        const Plane& plane = inside.planes[j];
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (int i = 0; i < size_; ++i) {
             const double depth = plane.depth(corner(i));
@@ -215,20 +210,20 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
             highest = high;
             first = count;
         }
-        least_[std::size_t(j)] = low;
-        nearest_[std::size_t(count++)] = j;
+        least_[j] = low;
+        nearest_[count++] = j;
     }
-    std::swap(nearest_[0], nearest_[std::size_t(first)]);
-    const Plane& main = inside.planes[std::size_t(nearest_[0])];
+    std::swap(nearest_[0], nearest_[first]);
+    const Plane& main = inside.planes[nearest_[0]];
     int possible = 1;
     for (int c = 1; c < count; ++c) {
-        const int j = nearest_[std::size_t(c)];
-        if (least_[std::size_t(j)] > bound) continue;
-        const Plane less = main - inside.planes[std::size_t(j)];
+        const int j = nearest_[c];
+        if (least_[j] > bound) continue;
+        const Plane less = main - inside.planes[j];
         bool some = false;
         for (int i = 0; i < size_ && !some; ++i)
             some = less.depth(corner(i)) > tolerance_;
-        if (some) nearest_[std::size_t(possible++)] = j;
+        if (some) nearest_[possible++] = j;
     }
     if (possible > 1) {
         wholeSize_ = size_;
@@ -238,14 +233,12 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
 }
 
 bool OverlapFinder::cell(const Side& inside, int number, int count) {
-    const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(number)])];
+    const Plane& nearest = inside.planes[nearest_[number]];
     size_ = wholeSize_;
     std::copy_n(whole_.begin(), wholeSize_, polygon_.begin());
     // Where a part is as deep below two faces, it belongs to the first of them.
     for (int d = 0; d < count; ++d)
-        if (d != number && !cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest,
-                                nearest_[std::size_t(number)] < nearest_[std::size_t(d)]))
-            return false;
+        if (d != number && !cut(inside.planes[nearest_[d]] - nearest, nearest_[number] < nearest_[d])) return false;
     return true;
 }
 
@@ -254,38 +247,26 @@ bool OverlapFinder::cell(const Side& inside, int number, int count) {
 void OverlapFinder::addParts(const Plane& pressure, const Plane& face, bool area, Sums& sums) const {
     const Corner* p = polygon_.data();
     const Corner& o = p[0];
-    const double p0 = pressure.depth(o), oo = o.x * o.x + o.y * o.y + o.z * o.z;
-    double p1 = pressure.depth(p[1]), ss = p[1].x * p[1].x + p[1].y * p[1].y + p[1].z * p[1].z;
+    const auto next = [](const Corner& c) { return Corner{c.y, c.z, c.x}; };
+    const double p0 = pressure.depth(o), oo = dot(o, o);
+    double p1 = pressure.depth(p[1]), ss = dot(p[1], p[1]);
     for (int i = 2; i < size_; ++i) {
-        const Corner &s = p[i - 1], &t = p[i];
-        const double sx = s.x - o.x, sy = s.y - o.y, sz = s.z - o.z, tx = t.x - o.x, ty = t.y - o.y, tz = t.z - o.z;
-        const double twice = face.a * (sy * tz - sz * ty) + face.b * (sz * tx - sx * tz) + face.c * (sx * ty - sy * tx);
+        const Corner &s = p[i - 1], &t = p[i], all = o + s + t;
+        const double twice = dot(face.normal, cross(s - o, t - o));
         const double p2 = pressure.depth(t), sum = p0 + p1 + p2;
-        const double x = o.x + s.x + t.x, y = o.y + s.y + t.y, z = o.z + s.z + t.z;
         const double part = twice / 24, sumPart = part * sum;
-        const double w0 = sumPart + part * p0, w1 = sumPart + part * p1, w2 = sumPart + part * p2;
         sums.pressure += 4 * sumPart;
-        sums.px += w0 * o.x + w1 * s.x + w2 * t.x;
-        sums.py += w0 * o.y + w1 * s.y + w2 * t.y;
-        sums.pz += w0 * o.z + w1 * s.z + w2 * t.z;
-        const double tt = t.x * t.x + t.y * t.y + t.z * t.z, all = x * x + y * y + z * z;
-        const double weighted = p0 * (oo + (o.x * x + o.y * y + o.z * z)) + p1 * (ss + (s.x * x + s.y * y + s.z * z)) +
-                                p2 * (tt + (t.x * x + t.y * y + t.z * z));
-        sums.square += twice / 120 * (sum * (all + (oo + ss + tt)) + 2 * weighted);
+        sums.first = sums.first + ((sumPart + part * p0) * o + (sumPart + part * p1) * s + (sumPart + part * p2) * t);
+        const double tt = dot(t, t);
+        const double weighted = p0 * (oo + dot(o, all)) + p1 * (ss + dot(s, all)) + p2 * (tt + dot(t, all));
+        sums.square += twice / 120 * (sum * (dot(all, all) + (oo + ss + tt)) + 2 * weighted);
         p1 = p2;
         ss = tt;
         if (!area) continue;
-        const double sixth = twice / 6;
         sums.area += 0.5 * twice;
-        sums.ax += sixth * x;
-        sums.ay += sixth * y;
-        sums.az += sixth * z;
-        sums.xx += part * (x * x + (o.x * o.x + s.x * s.x + t.x * t.x));
-        sums.xy += part * (x * y + (o.x * o.y + s.x * s.y + t.x * t.y));
-        sums.xz += part * (x * z + (o.x * o.z + s.x * s.z + t.x * t.z));
-        sums.yy += part * (y * y + (o.y * o.y + s.y * s.y + t.y * t.y));
-        sums.yz += part * (y * z + (o.y * o.z + s.y * s.z + t.y * t.z));
-        sums.zz += part * (z * z + (o.z * o.z + s.z * s.z + t.z * t.z));
+        sums.firstOfArea = sums.firstOfArea + twice / 6 * all;
+        sums.squares = sums.squares + part * (all * all + (o * o + s * s + t * t));
+        sums.mixed = sums.mixed + part * (all * next(all) + (o * next(o) + s * next(s) + t * next(t)));
     }
 }
 
@@ -293,14 +274,13 @@ void OverlapFinder::addPatches(const Side& of, const Side& inside, double sign) 
     for (int f = 0; f < of.block->faceCount(); ++f) {
         const int count = clip(of, inside, f);
         if (count == 0) continue;
-        const Plane& face = of.planes[std::size_t(f)];
-        Patch patch{face.a, face.b, face.c, sign, {}};
+        const Plane& face = of.planes[f];
+        Patch patch{face.normal, sign, {}};
         // The depth below the first face everywhere, then how much less deep the cells of the others are.
-        const Plane& first = inside.planes[std::size_t(nearest_[0])];
+        const Plane& first = inside.planes[nearest_[0]];
         addParts(first, face, true, patch.sums);
         for (int c = 1; c < count; ++c)
-            if (cell(inside, c, count))
-                addParts(inside.planes[std::size_t(nearest_[std::size_t(c)])] - first, face, false, patch.sums);
+            if (cell(inside, c, count)) addParts(inside.planes[nearest_[c]] - first, face, false, patch.sums);
         if (patch.sums.pressure > 0) patches_.push_back(patch);
     }
 }
@@ -342,8 +322,7 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
     Vector force = Vector::Zero(), moment = Vector::Zero(), first = Vector::Zero();
     double pressing = 0, square = 0, touched = 0;
     for (const auto& patch : patches_) {
-        const Vector normal = patch.sign * Vector(patch.a, patch.b, patch.c);
-        const Vector p(patch.sums.px, patch.sums.py, patch.sums.pz);
+        const Vector normal = patch.sign * eigen(patch.normal), p = eigen(patch.sums.first);
         force += patch.sums.pressure * normal;
         moment += p.cross(normal);
         first += p;
@@ -369,13 +348,14 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
     found.normal = force / size;
     for (const auto& patch : patches_) {
         const auto& s = patch.sums;
-        const double cosine = patch.sign * found.normal.dot(Vector(patch.a, patch.b, patch.c));
+        const double cosine = patch.sign * found.normal.dot(eigen(patch.normal));
         if (cosine <= 0) continue;
         const double share = 0.5 * cosine;
         found.area += share * s.area;
-        found.firstMoment += share * Vector(s.ax, s.ay, s.az);
+        found.firstMoment += share * eigen(s.firstOfArea);
         Matrix second;
-        second << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+        const auto &q = s.squares, &m = s.mixed;
+        second << q.x, m.x, m.z, m.x, q.y, m.y, m.z, m.y, q.z;
         found.secondMoment += share * second;
     }
     return true;
@@ -383,13 +363,12 @@ bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, con
 
 // The integral of the square of a depth over the present polygon.
 double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
-    const auto at = [](const Corner& c) { return Vector(c.x, c.y, c.z); };
-    const Vector o = at(polygon_[0]);
+    const Vector o = eigen(polygon_[0]);
     const double p0 = depth.depth(polygon_[0]);
     double sum = 0;
     for (int i = 2; i < size_; ++i) {
-        const auto &s = polygon_[std::size_t(i - 1)], &t = polygon_[std::size_t(i)];
-        const double twice = normal.dot((at(s) - o).cross(at(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
+        const auto &s = polygon_[i - 1], &t = polygon_[i];
+        const double twice = normal.dot((eigen(s) - o).cross(eigen(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
         sum += twice / 12 * (p0 * p0 + p1 * p1 + p2 * p2 + p0 * p1 + p1 * p2 + p2 * p0);
     }
     return sum;
@@ -399,15 +378,15 @@ double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
 // divergence of g depth²/2 is the depth. So the cell of every nearest face has a surface integral: over what it has of
 // the surface of `of`, and over its walls to other cells.
 double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
-    const auto normalOf = [](const Plane& p) { return Vector(p.a, p.b, p.c); };
+    const auto normalOf = [](const Plane& p) { return eigen(p.normal); };
     double sum = 0;
     std::fill(cells_.begin(), cells_.end(), false);
     for (int f = 0; f < of.block->faceCount(); ++f) {
-        const Vector outward = normalOf(of.planes[std::size_t(f)]);
+        const Vector outward = normalOf(of.planes[f]);
         const int count = clip(of, inside, f);
         for (int c = 0; c < count; ++c) {
-            cells_[std::size_t(nearest_[std::size_t(c)])] = true;
-            const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
+            cells_[nearest_[c]] = true;
+            const Plane& nearest = inside.planes[nearest_[c]];
             if (count == 1 || cell(inside, c, count))
                 sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
         }
@@ -418,23 +397,23 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
     // line if it lies outside one plane of the one block.
     const int corners = inside.block->cornerCount();
     for (int i = 0; i < faces; ++i) {
-        const auto& outline = inside.block->faces[std::size_t(i)];
+        const auto& outline = inside.block->faces[i];
         const auto outside = [&](int plane) {
             const double* depths = inside.depths.data() + plane * corners;
             for (int k = outline.first; k < outline.beyond; ++k)
-                if (depths[inside.block->outlines[std::size_t(k)]] >= -tolerance_) return false;
+                if (depths[inside.block->outlines[k]] >= -tolerance_) return false;
             return true;
         };
         bool near = true;
         for (int plane = 0; plane < bounds && near; ++plane)
             near = !outside(plane);
-        if (near) cells_[std::size_t(i)] = true;
+        if (near) cells_[i] = true;
     }
     for (int i = 0; i < faces; ++i)
         for (int j = i + 1; j < faces; ++j) {
-            if (!cells_[std::size_t(i)] || !cells_[std::size_t(j)]) continue;
-            const Plane& mine = inside.planes[std::size_t(i)];
-            const Plane wall = inside.planes[std::size_t(j)] - mine;
+            if (!cells_[i] || !cells_[j]) continue;
+            const Plane& mine = inside.planes[i];
+            const Plane wall = inside.planes[j] - mine;
             const Vector across = normalOf(wall); // from cell i to cell j the difference of depths falls along this
             const double steep = across.norm();
             if (!(steep > 0)) continue;
@@ -445,15 +424,15 @@ double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
             size_ = 0;
             for (const auto& [u, v] : {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)}) {
                 const Vector at = middle + wide * (u * e1 + v * e2);
-                corner(size_++) = {at[0], at[1], at[2]};
+                corner(size_++) = plain(at);
             }
             bool some = cut(mine, true);
             for (int k = 0; k < faces && some; ++k)
-                if (k != i && k != j) some = cut(inside.planes[std::size_t(k)] - mine, true);
+                if (k != i && k != j) some = cut(inside.planes[k] - mine, true);
             for (int k = 0; k < bounds && some; ++k) {
                 // A wall in a face of the block bounds the overlap. It is counted where that face was given to the cell
                 // outside, which is cell i, the first, if the overlap lies in cell j.
-                const Plane& face = of.planes[std::size_t(k)];
+                const Plane& face = of.planes[k];
                 some = cut(face, normalOf(face).dot(across) < 0);
             }
             if (some) sum += 0.5 * steep * squareOf(mine, n);

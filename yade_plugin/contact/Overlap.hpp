@@ -3,6 +3,7 @@
 // equations are derived in contact/README.md.
 #pragma once
 #include "ContactBlock.hpp"
+#include "common/PlainVector.hpp"
 
 namespace masonry {
 
@@ -12,8 +13,8 @@ struct RelativePose {
     Eigen::Vector3d place; // origin of the other block [m]
 };
 
-// What two blocks do to each other, for a stiffness of 1 Pa/m. All is in the axes of the one block. Moments are about
-// its origin.
+// What two blocks do to each other, for a stiffness of 1 Pa/m, in the axes of the one block; moments are about its
+// origin.
 struct Overlap {
     Eigen::Vector3d force;  // on the other block [m³]; the one block has the opposite
     Eigen::Vector3d moment; // on the other block about the origin of the one [m⁴]; the one block has the opposite
@@ -44,13 +45,12 @@ public:
     double potential(const ContactBlock& one, const ContactBlock& other, const RelativePose&);
 
 private:
-    struct Corner {
-        double x, y, z;
-    };
-    struct Plane { // depth of a point below a face: offset - (a x + b y + c z)
-        double a, b, c, offset;
-        double depth(const Corner& p) const { return offset - (a * p.x + b * p.y + c * p.z); }
-        Plane operator-(const Plane& o) const { return {a - o.a, b - o.b, c - o.c, offset - o.offset}; }
+    using Corner = PlainVector;
+    struct Plane {
+        PlainVector normal;
+        double offset;
+        double depth(const Corner& p) const { return offset - dot(normal, p); } // of a point below a face
+        Plane operator-(const Plane& o) const { return {normal - o.normal, offset - o.offset}; }
     };
     struct Side { // a block in the axes of the one block
         const ContactBlock* block;
@@ -60,14 +60,16 @@ private:
         int shallow;                // the face of the opposite block below which its deepest corner is least deep
         double least;               // that depth [m]
     };
-    struct Sums {            // of a part of a face
-        double pressure = 0; // integral of the depth [m³]
-        double square = 0;   // integral of the depth times the square of the distance from the origin
-        double px = 0, py = 0, pz = 0;
-        double area = 0, ax = 0, ay = 0, az = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    struct Sums {                       // of a part of a face
+        double pressure = 0;            // integral of the depth [m³]
+        double square = 0;              // integral of the depth times the square of the distance from the origin
+        PlainVector first{};            // of the depth [m⁴]
+        double area = 0;                // [m²]
+        PlainVector firstOfArea{};      // [m³]
+        PlainVector squares{}, mixed{}; // of the area: x², y², z², and xy, yz, zx [m⁴]
     };
     struct Patch { // a face of a block inside the other block
-        double a, b, c;
+        PlainVector normal;
         double sign; // 1 for the one block, -1 for the other
         Sums sums;
     };
@@ -87,7 +89,7 @@ private:
     // Adds integrals of a pressure over the present polygon, and those of the area if they are wanted.
     void addParts(const Plane& pressure, const Plane& face, bool area, Sums&) const;
     double squareOf(const Plane& depth, const Eigen::Vector3d& normal) const;
-    Corner& corner(int number) { return polygon_[std::size_t(number)]; }
+    Corner& corner(int number) { return polygon_[number]; }
     double depthIntegral(const Side& of, const Side& inside);
 
     Side one_, other_;

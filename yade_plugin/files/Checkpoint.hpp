@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The contents of a checkpoint and their form as bytes. No file is opened here. Bytes that come from a file are not
-// trusted: if they are cut short, altered or no checkpoint at all, they are refused with the reason.
+// The contents of a checkpoint and their form as bytes. Bytes that are cut short, altered or no checkpoint at all are
+// refused with the reason.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -23,8 +23,7 @@ struct Checkpoint {
     // Reads a checkpoint from its bytes. Throws std::invalid_argument, which says what is wrong with them.
     static Checkpoint read(std::string_view bytes);
 
-    // The bytes of a checkpoint with these records: adds the title and the size before them and the checksum after
-    // them.
+    // The bytes of a checkpoint with these records.
     static std::string sealed(std::string_view records);
 };
 

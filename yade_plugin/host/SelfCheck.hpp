@@ -7,9 +7,8 @@
 
 namespace masonry::host {
 
-// One line for each difference: the class, its member, what was expected and what was found. Empty if the running YADE
-// fits. A YADE of an unknown version whose layout fits is one difference too, unless the environment variable
-// MASONRY_UNKNOWN_YADE is 1: then it is a warning.
+// One line for each difference: class, member, what was expected and what was found. A YADE of an unknown version whose
+// layout fits is one, too, unless the environment variable MASONRY_UNKNOWN_YADE is 1: then it is a warning.
 std::vector<std::string> differences();
 
 // The YADE versions that this build can run in, for messages.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The classes of YADE that this plugin touches, declared in our own words, because Debian's YADE comes without headers.
-// Layouts are those of the YADE versions in SelfCheck.cpp, with double precision. SelfCheck.cpp compares them with the
-// running YADE when the plugin is imported; README.md says why they are declared as they are.
+// SelfCheck.cpp names the versions whose layouts these are, with double precision, and compares them with the running
+// YADE when the plugin is imported; README.md says why they are declared as they are.
 //
 // Each class declares its destructor before all other virtual functions and does not define it. The compiler then
 // writes no virtual function table for the class and uses YADE's own, so that dispatch, dynamic_cast and saving see one

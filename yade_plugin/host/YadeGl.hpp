@@ -44,9 +44,9 @@ class GlExtraDrawer : public Serializable {
     GlExtraDrawer() = default;
 };
 
-// Makes a functor for every class that it finds, before its first picture: with the graphical interface this is before
-// a script can register its classes. Whoever registers some later sets `initDone` to false, and the next picture begins
-// anew. A shape without a functor made then ends YADE with a failed assertion.
+// Makes a functor for every class that it finds, before its first picture: with the graphical interface before a script
+// can register its classes. Whoever registers some later sets `initDone` to false, and the next picture begins anew. A
+// shape without a functor made then ends YADE with a failed assertion.
 class OpenGLRenderer {
 public:
     static bool initDone;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The list of the joint laws. A program finds here every law by its name, and needs to know none of them.
+// The list of the joint laws. A program finds here every law by its name.
 #pragma once
 #include "law/common/JointField.hpp"
 #include "law/common/Law.hpp"
@@ -22,8 +22,7 @@ const std::vector<LawEntry>& laws();
 // The law that properties name. Throws WrongProperties with all their problems at once.
 std::shared_ptr<const Law> lawOf(const JointProperties&);
 
-// Everything that is wrong with properties; empty if all is well. Properties
-// that do not act are not looked at.
+// Everything that is wrong with the properties that act; empty if all is well.
 std::vector<Problem> problemsOf(const JointProperties&);
 
 } // namespace masonry

@@ -5,10 +5,10 @@
 
 namespace masonry {
 
-// What damping takes away from a force, or from an acceleration. Local damping takes alpha |F| sgn(v). Combined damping
-// takes alpha |F| (sgn(v) - sgn(dF/dt)) / 2. In a vibration about a steady motion that keeps the sign of the velocity
-// the second part has a mean of zero, so that half of what local damping takes remains. Neither takes more than what
-// stops the motion in the middle of the step. So damping never reverses a motion and never adds energy.
+// What damping takes away from a force, or from an acceleration. Local damping takes alpha |F| sgn(v), combined damping
+// alpha |F| (sgn(v) - sgn(dF/dt)) / 2, whose second part has a mean of zero in a vibration about a steady motion that
+// keeps the sign of the velocity. Neither takes more than what stops the motion in the middle of the step. So damping
+// never reverses a motion and never adds energy.
 //
 // `middle` is the velocity in the middle of the step, and `reach` is alpha |F|, or half of it for combined damping.
 // Both must be in the unit of the answer. `trend` is the sign of the force's change, and zero for local damping.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The energies of bodies or nodes in a run. An engine keeps one ledger, for rigid or for deformable units.
+// The energies of bodies or nodes in a run, for rigid or for deformable units.
 #pragma once
 
 namespace masonry {

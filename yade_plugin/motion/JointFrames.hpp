@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The arithmetic of many joints between their blocks and the law, in columns for the vector units: displacement jumps
-// from the places of the blocks, and forces on the blocks from the stresses. The functions are called in the order
-// align, then for each subcontact jump, the law and pull, then finish. Columns begin at the first of `n` joints and
-// never overlap, except that orientations, positions and displacements are those of all bodies or nodes.
+// The arithmetic of many joints between their blocks and the law, in columns: displacement jumps from the places of the
+// blocks, and forces on the blocks from the stresses. The functions are called in the order align, then for each
+// subcontact jump, the law and pull, then finish. Columns begin at the first of `n` joints and never overlap, except
+// that orientations, positions and displacements are those of all bodies or nodes.
 //
 // Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint; the
 // rotation `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. With
@@ -34,9 +34,9 @@ struct alignas(64) JointFrames {
                                     // sides the moment of jumps and forces [N m]
 };
 
-// For planar runs. Gives cosine and sine of half the angle by which each of `n` bodies has turned about y, from the
+// For planar runs: cosine and sine of half the angle by which each of `n` bodies has turned about y, from the
 // orientations `q` and the inverse reference orientations `r`. Returns the largest part of a rotation that is not about
-// y, as the sum of the sizes of the quaternion's x and z.
+// y: the sum of the sizes of the quaternion's x and z.
 double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine, double* sine);
 
 // Intact joints between rigid blocks, whose stresses are the stiffness times the jumps (see BatchStep).
@@ -92,9 +92,8 @@ template <bool plane> struct JointArithmetic {
     static void pullIntact(int n, const IntactFaces&, JointFrames&);
 
     // Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where
-    // in `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
-    // receives the force on side 1 of the present subcontact, global axes [N]. Of `onJoints` only the moments on the
-    // rotations of both blocks are set.
+    // in `u` the two sides of the present subcontact stand, with components `lanes` numbers apart. `onPoints` receives
+    // the force on side 1, global axes [N]; of `onJoints` only the moments on the rotations of both blocks are set.
     static void alignNodal(int n, const int* body1, const int* body2, const double* const* turn,
                            const double* const* f1, const double* const* f2, JointFrames&);
     static void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1,

@@ -36,11 +36,10 @@ inline int startOf(const std::vector<bool>& moves, Eigen::VectorXd& start) {
 // times x. `moves` says which components of the vectors can be other than zero; `multiply` must leave the others at
 // zero.
 //
-// Let the start vector be uniform on the sphere of n dimensions. After k steps of Lanczos the estimate is less than
-// 1 - e times the largest eigenvalue with a probability of at most 1.648 sqrt(n) exp(-sqrt(e) (2k - 1)), whatever the
+// Let the start vector be uniform on the sphere of n dimensions. After k steps of Lanczos the estimate is less than 1 -
+// e times the largest eigenvalue with a probability of at most 1.648 sqrt(n) exp(-sqrt(e) (2k - 1)), whatever the
 // operator; after n steps it is the eigenvalue (Kuczyński and Woźniakowski 1992, doi 10.1137/0613066). With e = 0.02,
-// and k so large that this probability is 1e-12, the estimate divided by 1 - e is taken as the bound. This takes some
-// 120 steps. The random numbers of the start vector are the same in every run, so that runs can be repeated.
+// and k so large that this probability is 1e-12, some 120, the estimate divided by 1 - e is taken as the bound.
 template <class Multiply> double largestEigenvalue(const std::vector<bool>& moves, Multiply&& multiply) {
     Eigen::VectorXd now;
     const int count = startOf(moves, now);
@@ -76,8 +75,8 @@ template <class Multiply> double largestEigenvalue(const std::vector<bool>& move
     return int(diagonal.size()) < enough ? high : high / (1 - marginOfLanczos);
 }
 
-// A unit vector made of the modes with the highest eigenvalues, of an operator as above. It only has to show which part
-// is stiffest, and power iteration is enough for that.
+// A unit vector made of the modes with the highest eigenvalues, by power iteration: it only has to show which part is
+// stiffest.
 template <class Multiply> Eigen::VectorXd highMode(const std::vector<bool>& moves, Multiply&& multiply) {
     Eigen::VectorXd mode;
     const int count = startOf(moves, mode);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "RigidMotion.hpp"
 #include "Damping.hpp"
-#include "common/Vectorised.hpp"
+#include "common/PlainVector.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -80,16 +80,15 @@ void RigidMotion::turn(int n, double dt, const double* const* spin, double* cons
         }
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
-        const double by = 0.5 * dt * sinc[i], w = cosine[i], x = by * wx[i], y = by * wy[i], z = by * wz[i];
-        const double a = q0[i], b = q1[i], c = q2[i], d = q3[i];
-        const double w1 = w * a - x * b - y * c - z * d, x1 = w * b + x * a + y * d - z * c;
-        const double y1 = w * c + y * a + z * b - x * d, z1 = w * d + z * a + x * c - y * b;
-        const double size = 1 / std::sqrt(w1 * w1 + x1 * x1 + y1 * y1 + z1 * z1);
+        const PlainQuaternion old{q0[i], {q1[i], q2[i], q3[i]}};
+        const PlainQuaternion now =
+            PlainQuaternion{cosine[i], 0.5 * dt * sinc[i] * PlainVector{wx[i], wy[i], wz[i]}} * old;
+        const double size = 1 / std::sqrt(dot(now, now));
         const bool turns = angle2[i] > 0;
-        q0[i] = turns ? w1 * size : a;
-        q1[i] = turns ? x1 * size : b;
-        q2[i] = turns ? y1 * size : c;
-        q3[i] = turns ? z1 * size : d;
+        q0[i] = turns ? now.w * size : old.w;
+        q1[i] = turns ? now.v.x * size : old.v.x;
+        q2[i] = turns ? now.v.y * size : old.v.y;
+        q3[i] = turns ? now.v.z * size : old.v.z;
     }
 }
 
@@ -97,40 +96,13 @@ void RigidMotion::turn(int n, double dt, const double* const* spin, double* cons
 
 namespace {
 
-struct Vector {
-    double x, y, z;
-};
-
-MASONRY_INLINED Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-MASONRY_INLINED Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-MASONRY_INLINED Vector operator*(double f, const Vector& a) { return {f * a.x, f * a.y, f * a.z}; }
-MASONRY_INLINED Vector operator*(const Vector& a, const Vector& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-MASONRY_INLINED Vector operator/(const Vector& a, const Vector& b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
-MASONRY_INLINED double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-MASONRY_INLINED Vector cross(const Vector& a, const Vector& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+// An orientation after a time [s], if it changes as fast as the orientation `by` does with a spin [1/s] about its own
+// axes.
+MASONRY_INLINED PlainQuaternion after(const PlainQuaternion& old, double time, const PlainQuaternion& by,
+                                      const PlainVector& spin) {
+    const double half = 0.5 * time;
+    return {old.w - half * dot(by.v, spin), old.v + half * (by.w * spin + cross(by.v, spin))};
 }
-
-struct Quaternion {
-    double w;
-    Vector v;
-
-    // A vector turned by this rotation, and by its inverse.
-    MASONRY_INLINED Vector turn(const Vector& a) const {
-        const Vector twice = 2 * cross(v, a);
-        return a + w * twice + cross(v, twice);
-    }
-    MASONRY_INLINED Vector turnBack(const Vector& a) const {
-        const Vector twice = 2 * cross(a, v);
-        return a + w * twice + cross(twice, v);
-    }
-    // This orientation after a time [s], if it changes as fast as the orientation `by` does with a spin [1/s] about its
-    // own axes.
-    MASONRY_INLINED Quaternion after(double time, const Quaternion& by, const Vector& spin) const {
-        const double half = 0.5 * time;
-        return {w - half * dot(by.v, spin), v + half * (by.w * spin + cross(by.v, spin))};
-    }
-};
 
 } // namespace
 
@@ -144,14 +116,14 @@ void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around)
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const bool mine = inSpace[i] != 0;
-        const Quaternion own{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
+        const PlainQuaternion own = quaternionAt(c.orientation, i);
         const double reach = share * alpha[i], steady = steady_[i];
-        const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
-        const Vector on{torque[0][i], torque[1][i], torque[2][i]};
-        const Vector before{c.spin[0][i], c.spin[1][i], c.spin[2][i]};
+        const PlainVector inertia = vectorAt(c.inertia, i);
+        const PlainVector on = vectorAt(torque, i);
+        const PlainVector before = vectorAt(c.spin, i);
         const double smaller = inertia.y < inertia.x ? inertia.y : inertia.x;
         const double least = inertia.z < smaller ? inertia.z : smaller;
-        const Vector undamped = own.turn(own.turnBack(on) / inertia); // angular acceleration
+        const PlainVector undamped = own.turn(own.turnBack(on) / inertia); // angular acceleration
         const auto take = [&](double inert, double on, double before, double gained, double momentum, double& last)
             __attribute__((always_inline)) {
             const double free = on / inert, change = free - last;
@@ -161,14 +133,12 @@ void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around)
             last = mine ? free : last;
             return local + steady * (momentum + half * (on - local));
         };
-        const Vector taken{take(inertia.x, on.x, before.x, undamped.x, momentum[0][i], c.last[0][i]),
-                           take(inertia.y, on.y, before.y, undamped.y, momentum[1][i], c.last[1][i]),
-                           take(inertia.z, on.z, before.z, undamped.z, momentum[2][i], c.last[2][i])};
-        const Vector left = on - taken;
-        const Vector after = before + dt * own.turn(own.turnBack(left) / inertia);
-        torque[0][i] = left.x;
-        torque[1][i] = left.y;
-        torque[2][i] = left.z;
+        const PlainVector taken{take(inertia.x, on.x, before.x, undamped.x, momentum[0][i], c.last[0][i]),
+                                take(inertia.y, on.y, before.y, undamped.y, momentum[1][i], c.last[1][i]),
+                                take(inertia.z, on.z, before.z, undamped.z, momentum[2][i], c.last[2][i])};
+        const PlainVector left = on - taken;
+        const PlainVector after = before + dt * own.turn(own.turnBack(left) / inertia);
+        put(torque, i, left);
         kinetic[i] += mine ? 0.5 * dot(own.turnBack(before), inertia * own.turnBack(after)) : 0;
         damped[0][i] += mine ? half * dot(taken, before) : 0;
         damped[1][i] += mine ? half * dot(taken, after) : 0;
@@ -184,18 +154,16 @@ void RigidMotion::turnInSpace(int n, const InSpace& given, double dt) {
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const bool mine = inSpace[i] != 0;
-        const Quaternion old{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
-        const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
-        const Vector on{torque[0][i], torque[1][i], torque[2][i]};
-        const Vector before{momentum[0][i], momentum[1][i], momentum[2][i]}, after = before + dt * on;
-        const Quaternion middle = old.after(0.5 * dt, old, old.turnBack(before + 0.5 * dt * on) / inertia);
-        const Vector spin = old.turnBack(after) / inertia;
-        const Quaternion now = old.after(dt, middle, spin);
-        const Vector turning = now.turn(spin);
+        const PlainQuaternion old = quaternionAt(c.orientation, i);
+        const PlainVector inertia = vectorAt(c.inertia, i);
+        const PlainVector on = vectorAt(torque, i);
+        const PlainVector before = vectorAt(momentum, i), grown = before + dt * on;
+        const PlainQuaternion middle = after(old, 0.5 * dt, old, old.turnBack(before + 0.5 * dt * on) / inertia);
+        const PlainVector spin = old.turnBack(grown) / inertia;
+        const PlainQuaternion now = after(old, dt, middle, spin);
+        const PlainVector turning = now.turn(spin);
         const double size = std::sqrt(now.w * now.w + dot(now.v, now.v));
-        momentum[0][i] = after.x;
-        momentum[1][i] = after.y;
-        momentum[2][i] = after.z;
+        put(momentum, i, grown);
         c.orientation[0][i] = mine ? now.w / size : old.w;
         c.orientation[1][i] = mine ? now.v.x / size : old.v.x;
         c.orientation[2][i] = mine ? now.v.y / size : old.v.y;

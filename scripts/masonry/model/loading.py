@@ -263,8 +263,7 @@ class Loading:
             if target.pressed is None or target.riding:
                 continue
             load = self.loads[f"{target.name}_press"]
-            drive = self.push if target is self.target else load
-            along = (load if drive.others else drive).displacement()
+            along = (self.push if target is self.target else load).displacement()
             away = (along[0], 0 if self.description.plane else along[1], 0)
             for one in (load, self.loads.get(f"{target.name}_press_grown")):
                 if one:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Place, motion and mass of the bodies of a scene, in columns. Integrator moves the rigid bodies here. The row
-// of a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
-// between two steps; the engines of this plugin detect that before they use the columns.
+// Place, motion and mass of the bodies of a scene, in columns; the row of a body is its id. Integrator moves the rigid
+// bodies here, and writes the host's State once a step. Scripts and other engines may change a State between two steps;
+// the engines of this plugin detect that before they use the columns.
 #pragma once
 #include "host/Yade.hpp"
 #include "motion/RigidMotion.hpp"
@@ -20,6 +20,15 @@ public:
     int size() const { return int(states_.size()); }
     bool has(int body) const { return states_[body] != nullptr; }
     yade::State& state(int body) const { return *states_[body]; }
+    // A vector of a body from three columns.
+    static yade::Vector3r row(const std::vector<double>* columns, int body) {
+        return {columns[0][body], columns[1][body], columns[2][body]};
+    }
+    yade::Vector3r placeOf(int body) const { return row(position, body); }
+    yade::Vector3r spinOf(int body) const { return row(velocity + 3, body); }
+    yade::Quaternionr turnOf(int body) const {
+        return {orientation[0][body], orientation[1][body], orientation[2][body], orientation[3][body]};
+    }
     // Axes 0 to 2 are the translations along x, y and z, axes 3 to 5 the rotations about them.
     bool isBlocked(int body, int axis) const { return seen_[body].blocked >> axis & 1; }
     unsigned blockedAxes(int body) const { return seen_[body].blocked; } // as in State.blockedDOFs
@@ -29,8 +38,8 @@ public:
     // One bit for each of the six axes in which the body is free or has a velocity.
     unsigned axes(int body) const { return seen_[body].axes; }
 
-    // Each of these takes a body from the host if its State has changed since it was last taken or given. detectMove()
-    // compares position and orientation; detectChange() also velocities, mass, blocked axes and damping;
+    // Each of these takes a body from the host if its State has changed since it was last taken or given: detectMove()
+    // compares position and orientation, detectChange() also velocities, mass, blocked axes and damping,
     // detectAnyChange() also inertia and reference place, which hardly ever change.
     void detectMove(int body) {
         if (!samePlace(body)) take(body);
@@ -79,8 +88,7 @@ private:
     std::vector<boost::shared_ptr<yade::State>> states_;
 };
 
-// The bits of a number. Bits are compared in place of numbers because that is quicker, and because a NaN is then equal
-// to itself.
+// The bits of a number: to compare them is quicker, and a NaN is then equal to itself.
 inline std::uint64_t bitsOf(double value) {
     std::uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);

@@ -26,9 +26,9 @@ struct BodyForces {
 };
 
 // A step takes the velocity v- to v+ with the forces at the place x_n. Between x_n and x_n+1 a force does the work of
-// its mean over both ends: half of the force at x_n works with v-, before that place, and half with v+, after it. The
-// second half is pending until step n+1. With the kinetic energy m v-·v+ / 2 the energy balance at x_n is then an
-// identity. The joints count their work by the same trapezoidal rule.
+// its mean over both ends: half of the force at x_n works with v-, before that place, and half with v+, after it, which
+// is pending until step n+1. With the kinetic energy m v-·v+ / 2 the energy balance at x_n is then an identity. The
+// joints count their work alike.
 struct BodyStep {
     yade::Vector3r vel;    // after the step [m/s]
     yade::Vector3r angVel; // after the step [1/s]; of a body that turns in space to first order

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the classes of adapters/ are for. Each declares its role, so that nothing in engine/ knows its name.
+// What the classes of adapters/ are for: each declares it, so that nothing in engine/ knows its name.
 #pragma once
 #include "host/Yade.hpp"
 

@@ -9,7 +9,7 @@ namespace masonry {
 
 class Fixed {
 public:
-    // To be called when a joint of this scene is made, or a deformable unit divided, with the values that it has taken.
+    // To be called with the values that a joint of this scene was made, or a deformable unit divided with.
     void fix(const yade::Scene& scene, const std::vector<double>& values) {
         scene_ = boost::const_pointer_cast<yade::Factorable>(scene.shared_from_this());
         values_ = values;

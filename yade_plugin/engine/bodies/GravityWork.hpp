@@ -8,9 +8,8 @@ namespace masonry {
 
 using yade::Vector3r;
 
-// While gravity g is constant, its work is the sum of m g·u over all masses m and their displacements u, less that sum
-// at the beginning of the run. The displacements count from the reference state, but the work counts from the first
-// step, so blocks that a script has moved before bring none.
+// While gravity g is constant, its work is the sum of m g·u over all masses m and their displacements u since the
+// reference state, less that sum at the first step: blocks that a script has moved before bring none.
 //
 // Between two steps with different gravities the work is that of their mean, as of every force that changes (BodyStep):
 // with the moment S, the sum of m u, it is (g + g')·(S' - S) / 2. Then the balance stays an identity.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The step of all rigid bodies, by the equations of NewtonIntegrator (see BodyStep), in columns. An engine derives
-// from it.
+// The step of all rigid bodies in columns, by the equations of NewtonIntegrator (see BodyStep). An engine derives from
+// it.
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Keeps Python and the engines of a running scene apart, so that attributes can be read and set at YADE's prompt while
-// O.run() works in the background. A reader waits until a step has ended, and a step waits until no reader is at work.
-// In these comments a reader is any thread that reads or changes attributes.
+// O.run() works in the background. A reader, any thread that reads or changes attributes, waits until a step has ended,
+// and a step waits until no reader is at work.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -23,8 +23,8 @@ public:
     void lock();
     void unlock();
 
-    // Lets the process be forked between two steps, and not within one. A process that is forked has none of the other
-    // threads: neither that of O.run() nor those of the loops, for which it would wait without end.
+    // Lets the process be forked between two steps only. A forked process has none of the other threads: neither that
+    // of O.run() nor those of the loops, for which it would wait without end.
     static void watchForks();
 
 private:

@@ -125,8 +125,7 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     if (back) ++changes;    // all engines read the scene anew
 }
 
-// A checksum of numbers and texts that do not change in a run. A checkpoint holds it, so that it is recognised whether
-// the scene into which it is loaded is the same.
+// A checksum of numbers and texts that do not change in a run, by which a checkpoint knows its scene.
 class Fingerprint {
 public:
     template <class... T> void operator()(const T&... values) { (add(values), ...); }
@@ -221,6 +220,13 @@ void refuseBeside(const std::string& what) {
                                     "call O.pause() first");
 }
 
+// Throws std::invalid_argument that begins with `what` if a number is not finite.
+void refuseInfinite(const Checkpoint& state, const std::string& what) {
+    for (const auto& [name, values] : state.numbers)
+        for (double value : values)
+            if (!std::isfinite(value)) throw std::invalid_argument(what + " at '" + name + "'");
+}
+
 yade::Scene& present() { return *Singleton<yade::Omega>::instance().getScene(); }
 
 } // namespace
@@ -229,10 +235,7 @@ py::object saveScene(const std::string& extra) {
     refuseBeside("saved");
     const BetweenSteps still;
     auto made = captured(present());
-    for (const auto& [name, values] : made.numbers)
-        for (double value : values)
-            if (!std::isfinite(value))
-                throw std::invalid_argument("the run has left finite numbers, at '" + name + "'");
+    refuseInfinite(made, "the run has left finite numbers,");
     made.texts["extra"] = extra;
     const auto bytes = made.bytes();
     return py::object(py::handle<>(PyBytes_FromStringAndSize(bytes.data(), Py_ssize_t(bytes.size()))));
@@ -242,9 +245,7 @@ std::string loadScene(const py::object& bytes) {
     refuseBeside("loaded");
     const BetweenSteps still;
     auto saved = read(bytes), here = captured(present());
-    for (const auto& [name, values] : saved.numbers)
-        for (double value : values)
-            if (!std::isfinite(value)) throw std::invalid_argument("is damaged: no finite number at '" + name + "'");
+    refuseInfinite(saved, "is damaged: no finite number");
     compare(saved, here);
     try {
         transfer(present(), saved, true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Moves the state of a scene into a checkpoint or back. The same code does both: it names every value, and the
-// direction decides which side is written.
+// Moves the state of a scene into a checkpoint or back: one code names every value, and the direction decides which
+// side is written.
 #pragma once
 #include "common/StateNumbers.hpp"
 #include "files/Checkpoint.hpp"

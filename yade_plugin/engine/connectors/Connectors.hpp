@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What connects bodies beside their joints: ties and springs, each kind in columns. An engine derives from each kind.
+// What connects bodies beside their joints: ties and springs, each kind in columns, from which an engine derives.
 #pragma once
 #include "engine/joints/SceneContents.hpp"
 
@@ -25,8 +25,8 @@ public:
     int count() const { return int(bodies1.size()); }
     // Adds the forces of all connectors to those of the present step, and counts their energies.
     virtual void act(SceneContents&) = 0;
-    // Stiffness of a connector between its ends along the global axes [N/m] and about them [N m], as far as it matters
-    // for the time step: never too small.
+    // Stiffness of a connector between its ends along the global axes [N/m] and about them [N m] for the time step:
+    // never too small.
     virtual Vector3r stiffnessOf(int connector) const = 0;
     virtual Vector3r rotationalStiffnessOf(int connector) const = 0;
 

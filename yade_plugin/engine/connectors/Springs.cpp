@@ -50,7 +50,7 @@ void Springs::act(SceneContents& contents) {
 
 Connectors::View Springs::view(const SceneContents&, int spring) const {
     View view;
-    if (std::size_t(spring) < forces.size()) view.force = forces[std::size_t(spring)];
+    if (std::size_t(spring) < forces.size()) view.force = forces[spring];
     return view;
 }
 

@@ -17,8 +17,8 @@ public:
 
     std::vector<std::string> problems() const;
     void act(SceneContents&) override;
-    Vector3r stiffnessOf(int spring) const override { return stiffness[std::size_t(spring)]; }
-    Vector3r rotationalStiffnessOf(int spring) const override { return rotationalStiffness[std::size_t(spring)]; }
+    Vector3r stiffnessOf(int spring) const override { return stiffness[spring]; }
+    Vector3r rotationalStiffnessOf(int spring) const override { return rotationalStiffness[spring]; }
     View view(const SceneContents&, int spring) const override;
     bool isBar() const override { return false; }
 };

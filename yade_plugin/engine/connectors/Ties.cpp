@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ties.hpp"
-#include "common/Vectorised.hpp"
+#include "common/PlainVector.hpp"
 #include <algorithm>
 
 namespace masonry {
@@ -50,7 +50,7 @@ void Ties::prepare(SceneContents& contents) {
         arms_[0][d].clear();
         arms_[1][d].clear();
     }
-    for (std::size_t i = 0; i < std::size_t(n); ++i) {
+    for (std::size_t i = 0; i < bodies1.size(); ++i) {
         const Vector3r span = points2[i] - points1[i];
         length_.push_back(span.norm());
         for (int d = 0; d < 3; ++d)
@@ -103,36 +103,21 @@ MASONRY_VECTORISED
 void Ties::pull(int count, Piece& p) {
     const double *k = p.stiffness, *rest = p.rest, *restBefore = p.restBefore, *strength = p.strength;
     const double *breaking = p.breaking, *both = p.both, *whole = p.whole, *lengthThen = p.length;
-    const double *spanX = p.span[0], *spanY = p.span[1], *spanZ = p.span[2];
     double *elongation = p.elongation, *force = p.force, *flow = p.flow;
     for (int e = 0; e < 2; ++e) {
-        // a + 2 w (q × a) + 2 q × (q × a) with the orientation (w, q)
-        const double *qw = p.turn[e][0], *qx = p.turn[e][1], *qy = p.turn[e][2], *qz = p.turn[e][3];
-        const double *ax = p.arm[e][0], *ay = p.arm[e][1], *az = p.arm[e][2];
-        double *tx = p.turned[e][0], *ty = p.turned[e][1], *tz = p.turned[e][2];
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
-            const double w = qw[i], x = qx[i], y = qy[i], z = qz[i], a = ax[i], b = ay[i], c = az[i];
-            const double s = 2 * (y * c - z * b), t = 2 * (z * a - x * c), u = 2 * (x * b - y * a);
-            tx[i] = a + w * s + (y * u - z * t);
-            ty[i] = b + w * t + (z * s - x * u);
-            tz[i] = c + w * u + (x * t - y * s);
-        }
+        for (int i = 0; i < count; ++i)
+            put(p.turned[e], i, quaternionAt(p.turn[e], i).turn(vectorAt(p.arm[e], i)));
     }
-    const double *x1 = p.place[0][0], *y1 = p.place[0][1], *z1 = p.place[0][2];
-    const double *x2 = p.place[1][0], *y2 = p.place[1][1], *z2 = p.place[1][2];
-    const double *a1 = p.turned[0][0], *b1 = p.turned[0][1], *c1 = p.turned[0][2];
-    const double *a2 = p.turned[1][0], *b2 = p.turned[1][1], *c2 = p.turned[1][2];
-    double *pullX = p.pull[0], *pullY = p.pull[1], *pullZ = p.pull[2];
     double *given = p.given, *lost = p.dissipated, *held = p.stored, *yields = p.yields, *breaks = p.breaks;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        const double x = (x2[i] + a2[i]) - (x1[i] + a1[i]), y = (y2[i] + b2[i]) - (y1[i] + b1[i]);
-        const double z = (z2[i] + c2[i]) - (z1[i] + c1[i]);
-        const double length = std::sqrt(x * x + y * y + z * z);
+        const PlainVector line =
+            (vectorAt(p.place[1], i) + vectorAt(p.turned[1], i)) - (vectorAt(p.place[0], i) + vectorAt(p.turned[0], i));
+        const PlainVector span = vectorAt(p.span, i);
+        const double length = std::sqrt(dot(line, line));
         // l² - L² = (l - L) (l + L), which loses no digits
-        const double more =
-            (x - spanX[i]) * (x + spanX[i]) + (y - spanY[i]) * (y + spanY[i]) + (z - spanZ[i]) * (z + spanZ[i]);
+        const double more = dot(line - span, line + span);
         const double longer = more / (length + lengthThen[i]);
         const double stiff = k[i], strong = strength[i], is = whole[i], before = force[i];
         const double u = longer - rest[i], elastic = stiff * (u - flow[i]);
@@ -152,25 +137,18 @@ void Ties::pull(int count, Piece& p) {
         const double remains = apart ? 0.0 : after, share = remains / length;
         force[i] = remains;
         elongation[i] = longer;
-        pullX[i] = share * x;
-        pullY[i] = share * y;
-        pullZ[i] = share * z;
+        put(p.pull, i, share * line);
     }
     for (int e = 0; e < 2; ++e) {
-        const double *a = p.turned[e][0], *b = p.turned[e][1], *c = p.turned[e][2];
-        double *tx = p.torque[e][0], *ty = p.torque[e][1], *tz = p.torque[e][2];
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
-            tx[i] = b[i] * pullZ[i] - c[i] * pullY[i];
-            ty[i] = c[i] * pullX[i] - a[i] * pullZ[i];
-            tz[i] = a[i] * pullY[i] - b[i] * pullX[i];
-        }
+        for (int i = 0; i < count; ++i)
+            put(p.torque[e], i, cross(vectorAt(p.turned[e], i), vectorAt(p.pull, i)));
     }
 }
 
 void Ties::scatter(yade::ForceContainer::Sums sums, const Piece& p, int first, int count) const {
     for (int i = 0; i < count; ++i) {
-        const int one = bodies1[std::size_t(first + i)], other = bodies2[std::size_t(first + i)];
+        const int one = bodies1[first + i], other = bodies2[first + i];
         const Vector3r pull(p.pull[0][i], p.pull[1][i], p.pull[2][i]);
         if (one != ground) {
             sums.forces[one] += pull;

@@ -8,8 +8,6 @@ namespace masonry {
 
 class Ties : public Connectors {
 public:
-    static constexpr double never = 1e300; // as strength or breaking elongation
-
     std::vector<double> stiffness; // E A / L [N/m]
     std::vector<double> strength;  // force at which a bar yields [N]
     std::vector<double> breaking;  // elongation since the bar got its length at which it breaks [m]
@@ -30,7 +28,7 @@ public:
 
     std::vector<std::string> problems() const;
     void act(SceneContents&) override;
-    Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[std::size_t(tie)]); }
+    Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[tie]); }
     Vector3r rotationalStiffnessOf(int) const override { return Vector3r::Zero(); }
     View view(const SceneContents&, int tie) const override;
     bool isBar() const override { return true; }

@@ -15,10 +15,6 @@ constexpr unsigned allAxes = 63;
 
 bool isHeld(const SceneContents& contents, int body) { return contents.bodies.blockedAxes(body) == allAxes; }
 
-Vector3r columnOf(const std::vector<double>* columns, int body) {
-    return {columns[0][std::size_t(body)], columns[1][std::size_t(body)], columns[2][std::size_t(body)]};
-}
-
 } // namespace
 
 std::vector<std::string> Contacts::problems() const {
@@ -67,15 +63,15 @@ void Contacts::checkBodies(const SceneContents& contents) const {
 void Contacts::prepare(const SceneContents& contents) {
     if (revision_ == contents.stiffnessRevision()) return;
     ids_ = idsOf(contents);
-    const auto count = std::size_t(contents.bodies.size());
+    const int count = contents.bodies.size();
     blocks_.assign(count, ContactBlock{});
     turns_.assign(count, Matrix3r::Identity());
     double thinnest = HUGE_VAL;
     finders_.clear();
     OverlapFinder finder;
     for (int id : ids_) {
-        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
-        auto& block = blocks_[std::size_t(id)];
+        const auto surface = blockOf(*contents.scene().bodies->body[id]->shape);
+        auto& block = blocks_[id];
         try {
             block = contactBlock(surface.vertices, surface.triangles);
         } catch (const std::invalid_argument& error) {
@@ -105,14 +101,14 @@ bool Contacts::moved(const SceneContents& contents) const {
     for (std::size_t i = 0; i < ids_.size(); ++i) {
         const int id = ids_[i];
         const auto& then = placed_[i];
-        const double shift = (columnOf(all.position, id) - then.position).norm();
+        const double shift = (all.placeOf(id) - then.position).norm();
         double same = 0, opposite = 0;
         for (int d = 0; d < 4; ++d) {
-            same += std::pow(all.orientation[d][std::size_t(id)] - then.orientation[d], 2);
-            opposite += std::pow(all.orientation[d][std::size_t(id)] + then.orientation[d], 2);
+            same += std::pow(all.orientation[d][id] - then.orientation[d], 2);
+            opposite += std::pow(all.orientation[d][id] + then.orientation[d], 2);
         }
         const double turn = 2.3 * std::sqrt(std::min(same, opposite));
-        if (!(shift + turn * blocks_[std::size_t(id)].radius <= 0.5 * usedSkin_)) return true;
+        if (!(shift + turn * blocks_[id].radius <= 0.5 * usedSkin_)) return true;
     }
     return false;
 }
@@ -123,10 +119,10 @@ void Contacts::findPairs(const SceneContents& contents) {
     std::vector<unsigned char> awake;
     placed_.clear();
     for (int id : ids_) {
-        const auto& block = blocks_[std::size_t(id)];
+        const auto& block = blocks_[id];
         Box box;
         for (int d = 0; d < 3; ++d) {
-            const Vector3r row = turns_[std::size_t(id)].row(d).transpose();
+            const Vector3r row = turns_[id].row(d).transpose();
             double low = HUGE_VAL, high = -HUGE_VAL;
             for (std::size_t c = 0; c < block.corners[0].size(); ++c) {
                 const double x =
@@ -134,14 +130,14 @@ void Contacts::findPairs(const SceneContents& contents) {
                 low = std::min(low, x);
                 high = std::max(high, x);
             }
-            box.low[d] = all.position[d][std::size_t(id)] + low - 0.5 * usedSkin_;
-            box.high[d] = all.position[d][std::size_t(id)] + high + 0.5 * usedSkin_;
+            box.low[d] = all.position[d][id] + low - 0.5 * usedSkin_;
+            box.high[d] = all.position[d][id] + high + 0.5 * usedSkin_;
         }
         boxes.push_back(box);
         awake.push_back(isAwake(contents, id));
-        Placed placed{columnOf(all.position, id), {}};
+        Placed placed{all.placeOf(id), {}};
         for (int d = 0; d < 4; ++d)
-            placed.orientation[d] = all.orientation[d][std::size_t(id)];
+            placed.orientation[d] = all.orientation[d][id];
         placed_.push_back(placed);
     }
     // Ids are sorted, so pairs of ids are, too.
@@ -151,7 +147,7 @@ void Contacts::findPairs(const SceneContents& contents) {
         return a.one != b.first ? a.one < b.first : a.other < b.second;
     };
     for (const auto& [i, j] : overlappingBoxes(boxes, awake)) {
-        const std::pair<int, int> ids(ids_[std::size_t(i)], ids_[std::size_t(j)]);
+        const std::pair<int, int> ids(ids_[i], ids_[j]);
         while (known != pairs_.end() && precedes(*known, ids))
             lostInFriction += endFriction((known++)->memory.friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
@@ -167,18 +163,16 @@ void Contacts::findPairs(const SceneContents& contents) {
 }
 
 RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
-    const auto& position = contents.bodies.position;
-    auto pose = relativePose(turns_[std::size_t(pair.one)], columnOf(position, pair.one),
-                             turns_[std::size_t(pair.other)], columnOf(position, pair.other));
+    auto pose = relativePose(turns_[pair.one], contents.bodies.placeOf(pair.one), turns_[pair.other],
+                             contents.bodies.placeOf(pair.other));
     pose.place += pair.gap;
     return pose;
 }
 
 ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
     const auto& all = contents.bodies;
-    return {turns_[std::size_t(body)],    columnOf(all.position, body),
-            columnOf(all.velocity, body), columnOf(all.velocity + 3, body),
-            all.mass[std::size_t(body)],  columnOf(all.inertia, body),
+    return {turns_[body],         all.placeOf(body), BodyColumns::row(all.velocity, body),
+            all.spinOf(body),     all.mass[body],    BodyColumns::row(all.inertia, body),
             all.blockedAxes(body)};
 }
 
@@ -186,16 +180,13 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
                      Effect& effect) const {
     const auto pose = poseOf(contents, pair);
     Overlap overlap;
-    effect.touches =
-        finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
+    effect.touches = finder.find(blocks_[pair.one], blocks_[pair.other], pose, pair.axis, overlap);
     const Vector3r gap = pair.gap;
     if (!effect.touches) {
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
             Overlap without;
             const RelativePose stands{pose.turn, pose.place - gap};
-            if (!finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], stands, pair.axis,
-                             without))
-                pair.gap.setZero();
+            if (!finder.find(blocks_[pair.one], blocks_[pair.other], stands, pair.axis, without)) pair.gap.setZero();
         }
         // Most pairs are only near each other.
         if (!pair.memory.touched()) {
@@ -206,18 +197,13 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
     }
     const auto one = bodyOf(contents, pair.one), other = bodyOf(contents, pair.other);
     actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio},
-              {blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], one, other, pose, gap},
-              contents.scene().dt, overlap, finder, pair.memory, effect);
+              {blocks_[pair.one], blocks_[pair.other], one, other, pose, gap}, contents.scene().dt, overlap, finder,
+              pair.memory, effect);
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
-    const auto& all = contents.bodies;
-    for (int id : ids_) {
-        const auto b = std::size_t(id);
-        turns_[b] = Eigen::Quaterniond(all.orientation[0][b], all.orientation[1][b], all.orientation[2][b],
-                                       all.orientation[3][b])
-                        .toRotationMatrix();
-    }
+    for (int id : ids_)
+        turns_[id] = contents.bodies.turnOf(id).toRotationMatrix();
 }
 
 void Contacts::act(SceneContents& contents) {
@@ -235,8 +221,7 @@ void Contacts::act(SceneContents& contents) {
     Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
             for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
-                actOn(contents, dampingRatio_, finders_[std::size_t(n)], pairs_[std::size_t(p)],
-                      effects_[std::size_t(p)]);
+                actOn(contents, dampingRatio_, finders_[n], pairs_[p], effects_[p]);
     });
     const auto sums = contents.scene().forces().sums(all.size());
     impulses_.resize(std::size_t(all.size()), Vector3r::Zero());
@@ -271,19 +256,18 @@ bool Contacts::isAwake(const SceneContents& contents, int body) const {
 // reference place by half of the skin. Where it overlaps a block then that it has no joint with, the gap of the pair is
 // as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
 void Contacts::wake(const SceneContents& contents) {
-    std::vector<unsigned char> jointed(std::size_t(contents.bodies.size()), 0);
+    std::vector<unsigned char> jointed(contents.bodies.size(), 0);
     contents.eachJoint([&](const JointView& joint) {
         for (const auto& side : joint.geom->reference().sides)
-            jointed[std::size_t(side.body)] = 1;
+            jointed[side.body] = 1;
     });
     const auto before = awake_.size();
     for (int id : ids_) {
         if (awake_.count(id) || isHeld(contents, id)) continue;
         const auto& s = contents.bodies.state(id);
-        const double moved = (columnOf(contents.bodies.position, id) - s.refPos).norm();
-        const double turn = (turns_[std::size_t(id)] - s.refOri.toRotationMatrix()).norm();
-        if (!jointed[std::size_t(id)] || moved + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_)
-            awake_.insert(id);
+        const double moved = (contents.bodies.placeOf(id) - s.refPos).norm();
+        const double turn = (turns_[id] - s.refOri.toRotationMatrix()).norm();
+        if (!jointed[id] || moved + turn * blocks_[id].radius > 0.5 * usedSkin_) awake_.insert(id);
     }
     if (awake_.size() > before) findPairsOfWoken(contents);
 }
@@ -311,8 +295,8 @@ Contacts::Pair* Contacts::pairOf(int one, int other) {
 // normal the gap goes along the present force, and the blocks just touch. Returns the elastic energy of the pair [J].
 double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3r& normal, const Vector3r& onOther) {
     auto& finder = finders_.front();
-    const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
-    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
+    const auto &one = blocks_[pair.one], &other = blocks_[pair.other];
+    const Matrix3r back = turns_[pair.one].transpose();
     pair.gap.setZero();
     pair.memory = PairMemory{};
     const RelativePose stands = poseOf(contents, pair);
@@ -384,10 +368,8 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
         conversionEnergy += settle(contents, *pair, sign * joint.normal, -sign * joint.force);
         const auto pose = poseOf(contents, *pair);
         Overlap overlap;
-        if (!finders_.front().find(blocks_[std::size_t(pair->one)], blocks_[std::size_t(pair->other)], pose, pair->axis,
-                                   overlap))
-            continue;
-        const Matrix3r& turn = turns_[std::size_t(pair->one)];
+        if (!finders_.front().find(blocks_[pair->one], blocks_[pair->other], pose, pair->axis, overlap)) continue;
+        const Matrix3r& turn = turns_[pair->one];
         const Vector3r& shear = pair->memory.friction.shear;
         const Vector3r force = normalStiffness * overlap.force + shear;
         const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
@@ -399,8 +381,8 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
 void Contacts::countChanges(const SceneContents& contents) {
     const double half = 0.5 * contents.scene().dt;
     for (const auto& change : changes_)
-        conversionEnergy += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
-                                    change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
+        conversionEnergy += half * (change.force.dot(BodyColumns::row(contents.bodies.velocity, change.body)) +
+                                    change.torque.dot(contents.bodies.spinOf(change.body)));
     changes_.clear();
 }
 
@@ -412,8 +394,7 @@ double Contacts::elastic(const SceneContents& contents) {
         if (!pair.memory.touched()) continue;
         const auto& s = pair.memory.friction;
         const RelativePose pose{s.turn, s.place};
-        sum += normalStiffness *
-               finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
+        sum += normalStiffness * finders_.front().potential(blocks_[pair.one], blocks_[pair.other], pose);
     }
     return sum;
 }
@@ -426,7 +407,7 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
     double most = 0;
     for (int id : idsOf(contents)) {
         if (isHeld(contents, id)) continue;
-        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
+        const auto surface = blockOf(*contents.scene().bodies->body[id]->shape);
         const auto& s = contents.bodies.state(id);
         most = std::max(most, embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass, s.inertia,
                                                  normalStiffness, tangentialRatio * normalStiffness));

@@ -60,8 +60,8 @@ public:
     double largestEigenvalue(const SceneContents&, bool anew);
     // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
     double largestDampingRatio() const;
-    // Where a force acted in the last step: two bodies, and force [N] and torque about its centre [N m] on the second
-    // of them, global axes. That is where blocks pressed on each other, and where they parted in this step.
+    // Where a force acted in the last step, because blocks pressed on each other or parted in this step: two bodies,
+    // and force [N] and torque about its centre [N m] on the second of them, global axes.
     struct PairForce {
         int one, other;
         Vector3r force, torque;

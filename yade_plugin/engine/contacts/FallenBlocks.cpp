@@ -13,11 +13,9 @@ namespace {
 
 double kineticEnergy(const BodyColumns& bodies, int body) {
     const auto& s = bodies.state(body);
-    const auto b = std::size_t(body);
-    const Vector3r spin(bodies.velocity[3][b], bodies.velocity[4][b], bodies.velocity[5][b]);
-    double twice = (s.ori.conjugate() * spin).cwiseAbs2().dot(s.inertia);
+    double twice = (s.ori.conjugate() * bodies.spinOf(body)).cwiseAbs2().dot(s.inertia);
     for (int d = 0; d < 3; ++d)
-        twice += s.mass * bodies.velocity[d][b] * bodies.velocity[d][b];
+        twice += s.mass * bodies.velocity[d][body] * bodies.velocity[d][body];
     return 0.5 * twice;
 }
 
@@ -41,7 +39,7 @@ void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& l
         if (fall.fell >= 0) continue;
         const auto& s = contents.bodies.state(body);
         const bool turned = std::abs((s.refOri.conjugate() * s.ori).w()) < std::cos(0.5 * turn);
-        const auto& size = sizes[std::size_t(body)];
+        const auto& size = sizes[body];
         const Vector3r moved = s.pos - s.refPos;
         const double sunk = gravity[down] > 0 ? moved[down] : -moved[down];
         const bool cameDown = gravity.isZero(0) || sunk > drop * size.thickness;
@@ -51,23 +49,23 @@ void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& l
 
 std::vector<unsigned char> heldByJoints(const SceneContents& contents) {
     constexpr unsigned allAxes = 63;
-    const auto count = std::size_t(contents.bodies.size());
+    const int count = contents.bodies.size();
     // One set for all that is joined: every body points to another one of its set, the first of it to itself.
-    std::vector<std::size_t> next(count);
+    std::vector<int> next(count);
     std::iota(next.begin(), next.end(), 0);
-    const auto first = [&](std::size_t body) {
+    const auto first = [&](int body) {
         while (next[body] != body)
             body = next[body] = next[next[body]];
         return body;
     };
     contents.eachJoint([&](const JointView& joint) {
         const auto& sides = joint.geom->reference().sides;
-        next[first(std::size_t(sides[0].body))] = first(std::size_t(sides[1].body));
+        next[first(sides[0].body)] = first(sides[1].body);
     });
     std::vector<unsigned char> held(count, 0);
-    for (std::size_t b = 0; b < count; ++b)
-        if (contents.bodies.has(int(b)) && contents.bodies.blockedAxes(int(b)) == allAxes) held[first(b)] = 1;
-    for (std::size_t b = 0; b < count; ++b)
+    for (int b = 0; b < count; ++b)
+        if (contents.bodies.has(b) && contents.bodies.blockedAxes(b) == allAxes) held[first(b)] = 1;
+    for (int b = 0; b < count; ++b)
         held[b] = held[first(b)];
     return held;
 }

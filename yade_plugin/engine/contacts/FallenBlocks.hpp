@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What has come loose in a scene whose joints are handed over to contact: when a block came loose, how fast it was at
-// most, and when it had fallen.
+// What has come loose in a scene whose joints are handed over to contact: when, how fast it was at most, and when it
+// had fallen.
 #pragma once
 #include "engine/joints/SceneContents.hpp"
 #include <vector>
@@ -41,8 +41,8 @@ private:
     std::vector<Fall> all_;
 };
 
-// Whether each body is held by joints that were not handed over, one after the other, from a body whose axes are all
-// blocked; by its id. Such a body counts as held itself.
+// Whether each body, by its id, is held by joints that were not handed over, one after the other, from a body whose
+// axes are all blocked, which counts as held itself.
 std::vector<unsigned char> heldByJoints(const SceneContents&);
 
 } // namespace masonry

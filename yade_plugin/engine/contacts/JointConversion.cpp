@@ -9,16 +9,6 @@ namespace masonry {
 
 namespace {
 
-Quaternionr turnOf(const SceneContents& store, int body) {
-    const auto& q = store.bodies.orientation;
-    return {q[0][body], q[1][body], q[2][body], q[3][body]};
-}
-
-Vector3r placeOf(const SceneContents& store, int body) {
-    const auto& x = store.bodies.position;
-    return {x[0][body], x[1][body], x[2][body]};
-}
-
 // Elastic energy of a joint [J].
 double stored(const JointView& joint) {
     const int points = joint.geom->points();
@@ -65,8 +55,8 @@ bool JointConversion::isDue(const SceneContents& store, const JointView& joint, 
     if (bond) return false;
     const double n = shapes.points;
     if (std::abs(along) / n > slide * size.along || std::abs(across) / n > slide * size.across) return true;
-    const double w =
-        std::abs((turnOf(store, r.sides[0].body).conjugate() * turnOf(store, r.sides[1].body) * size.back).w());
+    const double w = std::abs(
+        (store.bodies.turnOf(r.sides[0].body).conjugate() * store.bodies.turnOf(r.sides[1].body) * size.back).w());
     return w < std::cos(0.5 * turn);
 }
 
@@ -101,10 +91,11 @@ void JointConversion::act(SceneContents& store, Contacts& contacts) {
         const int body1 = r.sides[0].body, body2 = r.sides[1].body;
         if (!contacts.covers(body1) || !contacts.covers(body2)) continue; // nothing would take its place
         const auto normalBy = [&](int side) {
-            return Vector3r(turnOf(store, r.sides[side].body) * (r.sides[side].orientation.conjugate() * r.normal));
+            return Vector3r(store.bodies.turnOf(r.sides[side].body) *
+                            (r.sides[side].orientation.conjugate() * r.normal));
         };
-        const auto at1 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body1));
-        const auto at2 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body2));
+        const auto at1 = resultantOf(store.scene(), *joint.interaction, store.bodies.placeOf(body1));
+        const auto at2 = resultantOf(store.scene(), *joint.interaction, store.bodies.placeOf(body2));
         all.push_back({body1, body2, (normalBy(0) + normalBy(1)).normalized(), at1.force, at1.moment, -at2.moment});
         contacts.conversionEnergy -= release(joint);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Which joints are handed over to contact, and what they leave behind. A joint is for small displacements: it acts at
 // points of the reference state. Where its bond is gone and its blocks have moved far against each other, the contact
-// of the two blocks takes its place (engine/contacts/Contacts), and the joint has no forces any more.
+// of the two blocks takes its place (engine/contacts/Contacts).
 #pragma once
 #include "Contacts.hpp"
 #include "engine/joints/SceneContents.hpp"
@@ -28,8 +28,7 @@ private:
     };
     void measure(const SceneContents&);
     std::vector<JointView> due(const SceneContents&); // in the host's order
-    // Takes the forces from a joint: what is pressed or sheared is at rest from now on, and what is open stays as it is
-    // for files. Returns the elastic energy that it had [J].
+    // Takes the forces from a joint (LawColumns::release). Returns the elastic energy that it had [J].
     static double release(const JointView&);
     bool isDue(const SceneContents&, const JointView&, const Size&) const;
 

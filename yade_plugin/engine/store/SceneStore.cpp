@@ -329,9 +329,8 @@ void SceneStore::readJoints() {
         kind.shapes->shareShapes(known);
         made.push_back(kind);
     }
-    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or to one of
-    // which only one half is left. If there is one of the latter, the old groups stay readable, and checkScene()
-    // reports it.
+    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or of which only
+    // one half is left. With one of the latter the old groups stay readable, and checkScene() reports it.
     for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);

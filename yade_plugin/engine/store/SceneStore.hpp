@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
-// have changed. It owns the columns in which the state of joints and rigid bodies lives.
+// The view of a scene that all engines of this plugin share: its engines, bodies and joints, read again when they have
+// changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
 #include "RunEnded.hpp"
 #include "engine/bodies/Load.hpp"
+#include "engine/bodies/StepLock.hpp"
 #include "engine/joints/SceneContents.hpp"
 #include <map>
 #include <memory>
@@ -28,20 +29,18 @@ public:
         Joints, // It looks at joints only.
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
-    // groups, if the joints of the scene belong to more than one Zones.
+    // groups, if they belong to more than one Zones.
     void update(ScanScope scope = ScanScope::Everything);
     // Reads the joints again of which some were given other points: their stiffness stays in the time step.
     void pointsChanged();
     // Moves the joints that are there into common groups, while masonry.connect() makes others.
     void gather();
-    // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
-    // unjoinedBlocks().
+    // masonry.connect() calls this when all blocks have their joints; unjoinedBlocks() then reports blocks that are
+    // added later.
     void connected();
     bool isConnected() const { return !connected_.empty(); }
 
     bool gone() const { return life_.expired(); }
-    // Expires when the scene ends.
-    const boost::weak_ptr<yade::Factorable>& life() const { return life_; }
 
     // The engines of the scene that are not dead; null if there is none of a class.
     Zones* zones = nullptr;
@@ -65,8 +64,8 @@ public:
         return *static_cast<Kept*>(place.get());
     }
 
-    // Whether an engine finds the store as it must be in the present step: another engine has opened the step by
-    // update() and checkBeforeStep(), and neither engines nor joints have changed since.
+    // Whether another engine has opened the present step by update() and checkBeforeStep(), and neither engines nor
+    // joints have changed since.
     bool isOpenFor(const yade::Engine&);
     void opened() {
         openedStep_ = scene_.iter;
@@ -101,6 +100,18 @@ private:
     long openedStep_ = -1;                     // step that was opened last
     std::size_t place_ = 0;                    // in the list of engines, of ours that found it open last
     std::vector<const yade::Body*> connected_; // the bodies at connected()
+};
+
+// The present scene, up to date and without a step, while this exists: for functions of Python.
+class StillScene {
+public:
+    SceneStore* operator->() const { return &store_; }
+    SceneStore& operator*() const { return store_; }
+    explicit StillScene(SceneStore::ScanScope scope = SceneStore::ScanScope::Everything) { store_.update(scope); }
+
+private:
+    const BetweenSteps still_;
+    SceneStore& store_ = SceneStore::present();
 };
 
 } // namespace masonry

@@ -17,8 +17,6 @@ std::vector<std::string> Zones::problems() const {
         if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be 1 to 100");
     if (dampingKind != "combined" && dampingKind != "local")
         wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
-    if (!(massScaling >= 0) || !std::isfinite(massScaling))
-        wrong.push_back("massScaling " + text(massScaling) + " must be a finite number of at least 0");
     if (blocked.find_first_not_of("xyz") != std::string::npos)
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
     auto sorted = bodies;
@@ -401,7 +399,7 @@ void Zones::advanceGroup(const LaneGroup& group, const NodeMotion& motion, BodyC
     for (int k = 0; k < count; ++k)
         nodes += batches_[members[k]].elasticity->masses().size();
     if (scratch.size() < 9 * nodes) scratch.resize(9 * nodes);
-    ScaledUnits scaled[2];
+    LaneUnits scaled[2];
     Row turned[2][9];
     for (int k = 0; k < count; ++k) {
         const int b = members[k];
@@ -418,8 +416,7 @@ void Zones::advanceGroup(const LaneGroup& group, const NodeMotion& motion, BodyC
              {}};
         std::fill_n(s.present.lane, batch.units.size(), 1.0);
         addBlockForces(s.matrix, s.displacements, &moments_[3 * b], s.forces, turned[k], &energies[b], scratch.data());
-        if (massScaling == 0)
-            moveBlocks(s.matrix, motion, s.present, s.displacements, s.velocities, s.forces, s.lastForces, sums[b]);
+        if (massScaling == 0) moveBlocks(motion, s);
     }
     if (massScaling > 0) {
         Row whole{};
@@ -431,10 +428,9 @@ void Zones::advanceGroup(const LaneGroup& group, const NodeMotion& motion, BodyC
                 scaled[1].offset[d].lane[lane] = two.centre[d] - one.centre[d];
         }
         moveScaled(motion, massScaling, scaled, count, whole, scratch.data());
-        for (int k = 0; k < count; ++k)
-            sums[members[k]] = scaled[k].sums;
     }
     for (int k = 0; k < count; ++k) {
+        sums[members[k]] = scaled[k].sums;
         const auto& batch = batches_[members[k]];
         for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
             const auto& unit = units_[batch.units[lane]];

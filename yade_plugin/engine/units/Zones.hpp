@@ -31,8 +31,8 @@ public:
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
-    // To be called when one of these values has changed: the next call of units() divides the bodies anew. The state of
-    // the nodes is kept.
+    // To be called when one of these values has changed: the next call of units() divides the bodies anew, and the
+    // state of the nodes is kept.
     void divideAnew();
 
     // Makes a step of all units. Forces and moments of the joints are in the rows. `ofIntegrator` is the gravity of the
@@ -102,9 +102,9 @@ public:
     std::optional<Covered> cover(const Unit&, const std::vector<Vector3r>& polygon, const Vector3r& normal,
                                  const Vector3r& along) const;
 
-    // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
-    // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
-    // which move with a rigid body or between nodes. JointBatches adds rows for them, which follow those of the nodes.
+    // The rows in which the state of the nodes lives. The three components of a node are one row apart: rows()[place +
+    // d * lanes]. Dependent points are subcontacts' sides without a node of their own, which move with a rigid body or
+    // between nodes. JointBatches adds rows for them behind those of the nodes.
     int placeOf(int node) const { return places_[node]; }
     int addDependentRows(); // returns the place of the first lane
     void dropDependentRows();

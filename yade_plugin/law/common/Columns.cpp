@@ -4,12 +4,11 @@
 namespace masonry {
 
 MASONRY_VECTORISED
-void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                    double* normalStress) {
-    double* opening = columns[SharedColumn::Opening] + at;
-    double* shearStressA = columns[SharedColumn::ShearStressA] + at;
-    double* shearStressB = columns[SharedColumn::ShearStressB] + at;
-    const double* irreversible = columns[SharedColumn::Irreversible] + at;
+void advanceElastic(double kn, double ks, const Columns& columns, int count, const Jumps& jumps, double* normalStress) {
+    double* opening = columns[SharedColumn::Opening];
+    double* shearStressA = columns[SharedColumn::ShearStressA];
+    double* shearStressB = columns[SharedColumn::ShearStressB];
+    const double* irreversible = columns[SharedColumn::Irreversible];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         opening[i] += jumps.opening[i];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the states of subcontacts stand side by side in memory: a column for each quantity, so that the vector units
-// take several subcontacts at a time.
+// Where the states of subcontacts stand side by side in memory: a column for each quantity.
 #pragma once
 #include "common/Vectorised.hpp"
 #include <cstddef>
@@ -68,7 +67,6 @@ struct LaneSums { // of lanes, so that the order of adding is the same with any 
 };
 
 // One step of joints without strength, with the stiffnesses kn and ks [Pa/m].
-void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                    double* normalStress);
+void advanceElastic(double kn, double ks, const Columns& columns, int count, const Jumps& jumps, double* normalStress);
 
 } // namespace masonry

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// LawColumns with a law that takes one subcontact after the other. This is all that a law needs. Beside what Law.hpp
-// asks for, it gives:
+// LawColumns with a law that takes one subcontact after the other. Beside what Law.hpp asks for, such a law gives:
 //
 //   State                        what it remembers of a subcontact: JointState and more, with visitNumbers()
 //   Column                       its columns: those of SharedColumn, and one for each further number of its state
@@ -122,7 +121,7 @@ protected:
         if (self.elastic_) {
             double normalStress;
             const Jumps one{&jump.opening, &jump.slide.a, &jump.slide.b, false};
-            advanceElastic(self.k_.normal, self.k_.shear, columns, i, 1, one, &normalStress);
+            advanceElastic(self.k_.normal, self.k_.shear, columns.from(i), 1, one, &normalStress);
             self.regime_[i] = Regime::Elastic;
             return normalStress;
         }

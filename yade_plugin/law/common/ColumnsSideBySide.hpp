@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// ColumnsOf with a law that also takes several subcontacts at a time, and that has columns which are used only where
+// ColumnsOf with a law that also takes several subcontacts at a time, and has columns which are used only where
 // subcontacts have yielded. Beside what ColumnsOf.hpp asks for, the law gives:
 //
 //   Column::Crushing             the first of these columns; all that come after it are used likewise
@@ -89,12 +89,12 @@ public:
         if (!elastic_) markYielding(equations_, neverYielded_, count, opening, slideA, slideB, yielding);
     }
     void remember(int point, int from, int count, const double* opening) override {
-        if (!elastic_) rememberElastic(equations_, columns_, at(point, from), count, opening);
+        if (!elastic_) rememberElastic(equations_, columns_.from(at(point, from)), count, opening);
     }
 
 protected:
     void sumEnergies(int point, int from, int count, const double* area, LaneSums& sums) const override {
-        addEnergies(equations_, columns_, at(point, from), count, hasYielded(point, from), area, sums);
+        addEnergies(equations_, columns_.from(at(point, from)), count, hasYielded(point, from), area, sums);
     }
 
 private:
@@ -134,7 +134,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     }
     if (elastic_) {
         std::fill_n(regime, count, Regime::Elastic);
-        advanceElastic(k_.normal, k_.shear, columns_, first, count, jumps, normalStress);
+        advanceElastic(k_.normal, k_.shear, columns_.from(first), count, jumps, normalStress);
         return;
     }
     bool yielded = false;
@@ -144,12 +144,10 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     for (int n = 0; yielded && n < count; n += lanes)
         yieldFrom(point, from + n);
     std::fill_n(regime, count, Regime::Elastic);
-    const auto rest = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
-                                  normalStress, pending);
+    const SideBySide all{columns_.from(first), jumps, regime, pending, count, normalStress};
+    const auto rest = stayElastic(equations_, yielded ? nullptr : &neverYielded_, all);
     Mask left = rest.all;
-    if (rest.open != 0)
-        left -= slideOpen(equations_, law_->tension(), law_->shear(), columns_.from(first), regime, jumps, pending,
-                          count, normalStress);
+    if (rest.open != 0) left -= slideOpen(equations_, law_->tension(), law_->shear(), all);
     if (left == 0) return;
 
     int begin = int(std::find(pending, pending + count, 1) - pending), end = count; // those that need the whole law
@@ -164,9 +162,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     end = std::min((end - 1) / lanes * lanes + lanes, count);
     for (int n = begin; n < end; n += lanes)
         yieldFrom(point, from + n);
-    const Jumps theirs{jumps.opening + begin, jumps.slideA + begin, jumps.slideB + begin, jumps.plane};
-    advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first + begin), &rows_[first + begin],
-                      regime + begin, theirs, pending + begin, end - begin, normalStress + begin);
+    advanceSideBySide(equations_, law_->tension(), law_->shear(), &rows_[first + begin], all.part(begin, end));
 }
 
 } // namespace masonry

@@ -23,8 +23,7 @@ struct CompressionCurve {
 
     // In what follows `stretch` = 1/kn* - 1/kn [m/Pa] is what lumped units add to the elastic closure. Every point of
     // the curve moves by the elastic part at its own stress, u* = u + fc(u)·stretch (law/README.md, Rigid units).
-    // Closures u are those of joint and units together. The equations for u* are solved in closed form but for the
-    // tail.
+    // Closures u are those of joint and units together.
 
     // Strength [Pa] at the largest closure u [m].
     MASONRY_INLINED double strength(double u, double stretch = 0) const {

@@ -15,10 +15,9 @@ struct JointDamping {
 };
 
 // Adds the viscous stress, which is `normal` and `shear` times the change of the jump, to the stresses of `n`
-// subcontacts [Pa]. It acts in the elastic regime alone, where nothing yields, and only at subcontacts that are intact
-// or pressed. At one whose bond is damaged or missing it is cut, along its own direction, so that the sum of both
-// stresses does not pull, and does not exceed friction where the stress of the law does not. So an open subcontact
-// transmits nothing, and the damping takes energy in every step.
+// subcontacts [Pa]: in the elastic regime alone, and only at subcontacts that are intact or pressed. Where the bond is
+// damaged or missing it is cut, along its own direction, so that the sum of both stresses does not pull, and does not
+// exceed friction where the stress of the law does not. So the damping takes energy in every step.
 //
 // `change` are the changes of the jumps in this step [m], `viscous` the viscous stresses of the step before, which are
 // replaced. Returns the energy taken in the step by the trapezoidal rule [J], the mean of both viscous stresses times

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What files and Python show of the state of a subcontact: a number with its name, unit and meaning. A law tells its
-// own numbers in its folder. Those that several laws have are described here, so that a name means the same everywhere.
+// What files and Python show of the state of a subcontact. A law tells its own numbers in its folder; those that
+// several laws have are described here, so that a name means the same everywhere.
 #pragma once
 #include "common/Property.hpp"
 #include <functional>

@@ -51,9 +51,9 @@ struct JointProperties {
     // Calls visit(name, member, description) for every property.
     template <class Visit> static void describe(Visit&& visit);
 
-    // Every value that is out of its bounds; empty if all is well. The name and
-    // the two stiffnesses are looked at in any case, of the others those that `acts` says the law reads, and none of
-    // them if the joint is elastic. What a law demands beyond these bounds, it checks itself (law/Laws.hpp).
+    // Every value that is out of its bounds; empty if all is well. The name and the two stiffnesses are looked at in
+    // any case, of the others, unless the joint is elastic, those that `acts` says the law reads. What a law demands
+    // beyond these bounds, it checks itself (law/Laws.hpp).
     std::vector<Problem> outOfBounds(const std::function<bool(const std::string& property)>& acts) const;
 };
 

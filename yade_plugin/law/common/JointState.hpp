@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What any joint law knows of a subcontact, and what it is given and answers in a step. Opening and tension are
-// positive.
+// What any joint law knows of a subcontact, is given and answers in a step. Opening and tension are positive.
 #pragma once
 #include "Columns.hpp"
 #include <cstdint>
@@ -17,6 +16,22 @@ struct Jump { // increment of the displacement jump in a step [m]
 };
 
 enum class Regime : std::int8_t { Elastic, Opening, Slipping, Crushing }; // what acted in the last step
+
+// Subcontacts side by side that make a step together.
+struct SideBySide {
+    Columns columns; // which begin with the first of them
+    Jumps jumps;
+    Regime* regime;
+    Mask* pending; // 1 where the step is still to be made, else 0
+    int count;     // at most Columns::most
+    double* normalStress;
+
+    SideBySide part(int from, int beyond) const {
+        return {columns.from(from), {jumps.opening + from, jumps.slideA + from, jumps.slideB + from, jumps.plane},
+                regime + from,      pending + from,
+                beyond - from,      normalStress + from};
+    }
+};
 
 // The state of a law derives from this one and adds what the law remembers.
 struct JointState {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The states of the subcontacts of joints of one kind, in columns [point][joint], as a program sees them that does not
-// know the law. What a law does with them is in ColumnsOf and ColumnsSideBySide.
+// The states of the subcontacts of joints of one kind, in columns [point][joint], for who does not know the law. What a
+// law does with them is in ColumnsOf and ColumnsSideBySide.
 #pragma once
 #include "Columns.hpp"
 #include "JointField.hpp"
@@ -59,8 +59,8 @@ public:
     Energies dissipated(int point, int joint) const; // [J/m²] so far
     virtual void setDissipated(int point, int joint, const Energies&) = 0;
 
-    // All numbers of the state of a subcontact, its regime among them, with their names. `read` shows them to a
-    // function, `write` takes those that the function leaves.
+    // All numbers of the state of a subcontact, its regime among them, with their names: `read` shows them to a
+    // function, `write` takes those that it leaves.
     virtual void read(int point, int joint, const std::function<void(const char* name, double number)>&) const = 0;
     virtual void write(int point, int joint, const std::function<void(const char* name, double& number)>&) = 0;
     void visitState(int point, int joint, StateNumbers&); // the same and what was dissipated, to save or to load
@@ -86,8 +86,8 @@ public:
                          const double* slideB, double* normalStress) = 0;
 
     // Intact joints. As long as a joint is elastic and has never yielded, its stresses are the stiffness times its
-    // jumps, which are linear over its face, and a program need not advance its points. A law for which that holds says
-    // so here, and then answers the four questions that follow; one that does not is never asked.
+    // jumps, which are linear over its face, and its points need not be advanced. A law for which that holds says so
+    // here, and then answers the questions that follow; another is never asked them.
     virtual bool knowsIntact() const { return false; }
     // Whether nothing has yielded at a subcontact, so that its stress is the stiffness times its jump, or differs from
     // that by a stress that was given to it.
@@ -96,7 +96,7 @@ public:
     // domain is convex.
     virtual bool isConvex() const { return false; }
     // Adds 1 to `yielding` where a subcontact of an intact joint would not be well within the elastic domain under a
-    // jump; a number that is not finite is not. Without slideB all is in the plane.
+    // jump, or the jump is not finite. Without slideB all is in the plane.
     virtual void findYielding(int /*count*/, const double* /*opening*/, const double* /*slideA*/,
                               const double* /*slideB*/, Mask* /*yielding*/) const {}
     // Takes down what a subcontact that stays elastic remembers of an opening, such as the largest so far, for the
@@ -133,8 +133,8 @@ private:
     struct Release {
         void operator()(void* memory) const { std::free(memory); }
     };
-    // Zeroed memory that takes no room in the machine before it is written to: columns that the law only uses where
-    // subcontacts have yielded cost nothing where none has.
+    // Zeroed memory that takes no room in the machine before it is written to, as columns that only subcontacts which
+    // have yielded use.
     std::unique_ptr<void, Release> memory_;
 };
 

@@ -37,28 +37,25 @@ public:
     // The fracture energy [J/m²] with which that table falls `gentler` times as slowly.
     static double fractureEnergyOf(double strength, double stiffness, double fractureEnergy, double gentler);
 
-    // In what follows `shift` [-] is what lumped units add to the ratio at the peak: a row stands at ratio +
-    // shift (1 - damage), because it moves by the elastic part at its own strength (law/README.md, Rigid units). It is
-    // at least 0, and may differ from call to call. Where a row then stands before an earlier one, the softening snaps
-    // back; the damage rises at once to where the table goes on.
+    // In what follows `shift` [-], at least 0, is what lumped units add to the ratio at the peak: a row stands at ratio
+    // + shift (1 - damage), because it moves by the elastic part at its own strength (law/README.md, Rigid units).
+    // Where a row then stands before an earlier one, the softening snaps back; the damage rises at once to where the
+    // table goes on.
 
     // Linear between rows; past the last one its damage stays [decided].
     double damage(double ratio, double shift = 0) const {
-        if (rows_.empty() || !(ratio > 1 + shift)) return 0;
-        if (!rises(shift)) return damageAfterDrops(ratio, shift);
-        if (ratio >= position(rows_.size() - 1, shift)) return rows_.back().damage;
-        return within(rowOf(ratio, shift), ratio, shift);
+        std::int32_t row = 0;
+        return damage(ratio, shift, row);
     }
-
     // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
     double damage(double ratio, double shift, std::int32_t& row) const {
         if (rows_.empty() || !(ratio > 1 + shift)) return 0;
         if (!rises(shift)) return damageAfterDrops(ratio, shift);
-        if (isWithin(std::size_t(row), ratio, shift)) return within(std::size_t(row), ratio, shift);
+        if (isWithin(row, ratio, shift)) return within(row, ratio, shift);
         if (ratio >= position(rows_.size() - 1, shift)) return rows_.back().damage;
-        const std::size_t next = std::size_t(row) + 1;
+        const std::size_t next = row + 1;
         row = std::int32_t(isWithin(next, ratio, shift) ? next : rowOf(ratio, shift));
-        return within(std::size_t(row), ratio, shift);
+        return within(row, ratio, shift);
     }
 
     // Steepest rise of damage with the ratio but for brittle drops, that is rows at most 1e-3 apart between which a

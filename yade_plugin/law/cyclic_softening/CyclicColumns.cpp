@@ -8,30 +8,31 @@ namespace {
 
 using Column = CyclicColumn;
 
-// Advances the subcontacts at which no strength is exceeded and no stiffness changes. A subcontact that needs the whole
-// law keeps its old state, and its entry of `pending` becomes 1. Returns the number of these subcontacts.
+// Advances the subcontacts at which no strength is exceeded and no stiffness changes. One that needs the whole law
+// keeps its old state and becomes pending. Returns how many these are.
 template <bool spatial, bool yielded, bool curved>
-MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicDerived& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicDerived& ofAll,
+                                   const SideBySide& subcontacts) {
     CyclicEquations e = given;
+    const SideBySide all = subcontacts;
     e.curved = curved;
     const CyclicDerived same = ofAll;
-    double* opening = columns[Column::Opening] + at;
-    double* shearStressA = columns[Column::ShearStressA] + at;
-    double* shearStressB = columns[Column::ShearStressB] + at;
-    double* largestOpening = columns[Column::LargestOpening] + at;
-    const double* irreversible = columns[Column::Irreversible] + at;
-    const double* intact = columns[Column::Intact] + at;
-    const double* secant = columns[Column::Secant] + at;
-    const double* reach = columns[Column::Reach] + at;
-    const double* capSquared = columns[Column::CapSquared] + at;
-    const double* shearStiffness = columns[Column::ShearStiffness] + at;
-    const double* closingStiffness = columns[Column::ClosingStiffness] + at;
-    const double* squaredHardening = columns[Column::SquaredHardening] + at;
+    double* opening = all.columns[Column::Opening];
+    double* shearStressA = all.columns[Column::ShearStressA];
+    double* shearStressB = all.columns[Column::ShearStressB];
+    double* largestOpening = all.columns[Column::LargestOpening];
+    const double* irreversible = all.columns[Column::Irreversible];
+    const double* intact = all.columns[Column::Intact];
+    const double* secant = all.columns[Column::Secant];
+    const double* reach = all.columns[Column::Reach];
+    const double* capSquared = all.columns[Column::CapSquared];
+    const double* shearStiffness = all.columns[Column::ShearStiffness];
+    const double* closingStiffness = all.columns[Column::ClosingStiffness];
+    const double* squaredHardening = all.columns[Column::SquaredHardening];
     const double sameCap = same.strength * same.strength;
     Mask waiting = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
         const double tensileSecant = yielded ? secant[i] : same.secant;
         const double within = yielded ? reach[i] : same.reach;
@@ -44,49 +45,41 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicDer
         const double oldA = shearStressA[i];
         const double oldB = spatial ? shearStressB[i] : 0;
         const double farthest = largestOpening[i];
-        const auto moved = PiecewiseEquations::open(oldOpening, plastic, farthest, jumps.opening[i]);
+        const auto moved = PiecewiseEquations::open(oldOpening, plastic, farthest, all.jumps.opening[i]);
         const double sigma = e.normal(moved.elastic, tensileSecant, closing);
-        const double a = oldA + shearing * jumps.slideA[i];
-        const double b = spatial ? oldB + shearing * jumps.slideB[i] : 0;
+        const double a = oldA + shearing * all.jumps.slideA[i];
+        const double b = spatial ? oldB + shearing * all.jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((closing - tensileSecant) * moved.before * moved.elastic >= 0);
         const bool elastic =
             e.isElastic<curved>({within, bond, squaredCap, hardening}, moved.elastic, sigma, tauSquared) & keeps;
-        normalStress[i] = sigma;
+        all.normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
         if (spatial) shearStressB[i] = elastic ? b : oldB;
         largestOpening[i] = elastic ? moved.farthest : farthest;
-        pending[i] = elastic ? 0 : 1;
+        all.pending[i] = elastic ? 0 : 1;
         waiting += elastic ? 0 : 1;
     }
     return waiting;
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicDerived& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
-    return e.curved
-               ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-               : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicDerived& ofAll, const SideBySide& all) {
+    return e.curved ? stayElasticAs<spatial, yielded, true>(e, ofAll, all)
+                    : stayElasticAs<spatial, yielded, false>(e, ofAll, all);
 }
 
 } // namespace
 
 MASONRY_VECTORISED
-Waiting stayElastic(const CyclicEquations& e, const CyclicDerived* neverYielded, const Columns& columns, std::size_t at,
-                    int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Waiting stayElastic(const CyclicEquations& e, const CyclicDerived* neverYielded, const SideBySide& all) {
     const bool yielded = neverYielded == nullptr;
     const CyclicDerived ofAll = yielded ? CyclicDerived{} : *neverYielded;
-    Mask all;
-    if (jumps.plane)
-        all = yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                      : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
-    else
-        all = yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                      : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
-    return {all, 0};
+    if (all.jumps.plane)
+        return {yielded ? stayElasticOn<false, true>(e, ofAll, all) : stayElasticOn<false, false>(e, ofAll, all), 0};
+    return {yielded ? stayElasticOn<true, true>(e, ofAll, all) : stayElasticOn<true, false>(e, ofAll, all), 0};
 }
 
 // ---- intact joints --------------------------------------------------------------------------------------------------
@@ -119,8 +112,8 @@ void markYielding(const CyclicEquations& e, const CyclicDerived& neverYielded, i
 }
 
 MASONRY_VECTORISED
-void rememberElastic(const CyclicEquations&, const Columns& columns, std::size_t at, int count, const double* opening) {
-    double* largestOpening = columns[Column::LargestOpening] + at;
+void rememberElastic(const CyclicEquations&, const Columns& columns, int count, const double* opening) {
+    double* largestOpening = columns[Column::LargestOpening];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double farthest = largestOpening[i];
@@ -163,43 +156,41 @@ std::vector<Processor> processors() {
 } // namespace cyclic
 
 void advanceSideBySide(const CyclicEquations& e, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
-                       int count, double* normalStress) {
+                       TableRows* rows, const SideBySide& all) {
     static const auto fastest = cyclic::processors().back().advance;
-    fastest({e, tension, shear, shear.lastRatio() - 1}, columns, rows, regime, jumps, pending, count, normalStress);
+    fastest({e, tension, shear, shear.lastRatio() - 1}, rows, all);
 }
 
 namespace {
 
 template <bool yielded>
-MASONRY_INLINED void addEnergiesAs(const CyclicEquations& e, const Columns& columns, std::size_t at, int count,
-                                   const double* area, LaneSums& sums) {
-    const double* opening = columns[Column::Opening] + at;
-    const double* shearStressA = columns[Column::ShearStressA] + at;
-    const double* shearStressB = columns[Column::ShearStressB] + at;
+MASONRY_INLINED void addEnergiesAs(const CyclicEquations& e, const Columns& columns, int count, const double* area,
+                                   LaneSums& sums) {
+    const double* opening = columns[Column::Opening];
+    const double* shearStressA = columns[Column::ShearStressA];
+    const double* shearStressB = columns[Column::ShearStressB];
     for (int i = 0; i < count; ++i) {
-        const double w = yielded ? opening[i] + columns[Column::Irreversible][at + i] : opening[i];
-        const double secant = yielded ? columns[Column::Secant][at + i] : e.kn;
-        const double closing = yielded ? columns[Column::ClosingStiffness][at + i] : e.kn;
-        const double shearing = yielded ? columns[Column::ShearStiffness][at + i] : e.ks;
+        const double w = yielded ? opening[i] + columns[Column::Irreversible][i] : opening[i];
+        const double secant = yielded ? columns[Column::Secant][i] : e.kn;
+        const double closing = yielded ? columns[Column::ClosingStiffness][i] : e.kn;
+        const double shearing = yielded ? columns[Column::ShearStiffness][i] : e.ks;
         const double tauSquared = shearStressA[i] * shearStressA[i] + shearStressB[i] * shearStressB[i];
         const double normal = area[i] * e.storedNormal(e.normal(w, secant, closing), w);
         sums.storedTension[i] += w > 0 ? normal : 0;
         sums.storedCompression[i] += w > 0 ? 0 : normal;
         sums.storedShear[i] += area[i] * PiecewiseEquations::storedShear(tauSquared, shearing);
         if (!yielded) continue;
-        sums.lostTension[i] += area[i] * columns[Column::LostTension][at + i];
-        sums.lostShear[i] += area[i] * columns[Column::LostShear][at + i];
-        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][at + i];
+        sums.lostTension[i] += area[i] * columns[Column::LostTension][i];
+        sums.lostShear[i] += area[i] * columns[Column::LostShear][i];
+        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][i];
     }
 }
 
 } // namespace
 
-void addEnergies(const CyclicEquations& e, const Columns& columns, std::size_t at, int count, bool yielded,
-                 const double* area, LaneSums& sums) {
-    yielded ? addEnergiesAs<true>(e, columns, at, count, area, sums)
-            : addEnergiesAs<false>(e, columns, at, count, area, sums);
+void addEnergies(const CyclicEquations& e, const Columns& columns, int count, bool yielded, const double* area,
+                 LaneSums& sums) {
+    yielded ? addEnergiesAs<true>(e, columns, count, area, sums) : addEnergiesAs<false>(e, columns, count, area, sums);
 }
 
 } // namespace masonry

@@ -55,19 +55,15 @@ inline bool neverYielded(const CyclicEquations& e, const CyclicState& s) {
 inline bool isLinear(const CyclicEquations& e) { return !e.curved; }
 void markYielding(const CyclicEquations& equations, const CyclicDerived& neverYielded, int count, const double* opening,
                   const double* slideA, const double* slideB, Mask* yielding);
-void rememberElastic(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count,
-                     const double* opening);
-Waiting stayElastic(const CyclicEquations& equations, const CyclicDerived* neverYielded, const Columns& columns,
-                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+void rememberElastic(const CyclicEquations& equations, const Columns& columns, int count, const double* opening);
+Waiting stayElastic(const CyclicEquations& equations, const CyclicDerived* neverYielded, const SideBySide& all);
 // Open subcontacts have no short step here.
-inline Mask slideOpen(const CyclicEquations&, const SofteningTable&, const SofteningTable&, const Columns&, Regime*,
-                      const Jumps&, Mask*, int, double*) {
+inline Mask slideOpen(const CyclicEquations&, const SofteningTable&, const SofteningTable&, const SideBySide&) {
     return 0;
 }
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
-                       int count, double* normalStress);
-void addEnergies(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count, bool yielded,
-                 const double* area, LaneSums& sums);
+                       TableRows* rows, const SideBySide& all);
+void addEnergies(const CyclicEquations& equations, const Columns& columns, int count, bool yielded, const double* area,
+                 LaneSums& sums);
 
 } // namespace masonry

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The equations of the cyclic law at one subcontact, beside those that it shares with the paper's law. They are
-// templates for a number type T, so that one subcontact (double) and several (Pack) follow the same lines. README.md
-// says them in words.
+// The equations of the cyclic law at one subcontact, beside those of the paper's law, for a number type T: one
+// subcontact (double) or several (Pack). README.md says them in words.
 #pragma once
 #include "common/Pack.hpp"
 #include "law/piecewise_softening/PiecewiseEquations.hpp"

@@ -17,8 +17,8 @@ public:
     using Column = CyclicColumn;
     using Equations = CyclicEquations;
 
-    // Whether so many subcontacts that may yield are advanced faster one by one than gathered and several at a time,
-    // wherever they stand (measured, tests/law/benchmark_law.cpp).
+    // Whether so many subcontacts that may yield are advanced faster one by one than several at a time (measured,
+    // tests/law/benchmark_law.cpp).
     static constexpr bool fasterOneByOne(int many, int /*groups*/) { return many < 3; }
 
     // Throws std::invalid_argument with all problems of the properties at once.

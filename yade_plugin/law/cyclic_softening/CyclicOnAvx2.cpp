@@ -16,8 +16,7 @@
 #define MASONRY_PACK_BYTES 32
 #include "CyclicSideBySide.hpp"
 
-void masonry::cyclic::advanceOnAvx2(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                                    const Jumps& jumps, const Mask* pending, int count, double* normalStress) {
-    advanceAs(numbers, columns, rows, regime, jumps, pending, count, normalStress);
+void masonry::cyclic::advanceOnAvx2(const Numbers& numbers, TableRows* rows, const SideBySide& all) {
+    advanceAs(numbers, rows, all);
 }
 #endif

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cyclic law side by side with the vector units of AVX-512. The standard headers stand before the pragma, so that
-// their functions are not compiled for these units.
+// The cyclic law side by side with the vector units of AVX-512; see CyclicOnAvx2.cpp.
 #include "common/Vectorised.hpp"
 #if MASONRY_VECTOR_UNITS
 #include <algorithm>
@@ -16,8 +15,7 @@
 #define MASONRY_PACK_BYTES 64
 #include "CyclicSideBySide.hpp"
 
-void masonry::cyclic::advanceOnAvx512(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                                      const Jumps& jumps, const Mask* pending, int count, double* normalStress) {
-    advanceAs(numbers, columns, rows, regime, jumps, pending, count, normalStress);
+void masonry::cyclic::advanceOnAvx512(const Numbers& numbers, TableRows* rows, const SideBySide& all) {
+    advanceAs(numbers, rows, all);
 }
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One step of the cyclic law for several subcontacts side by side, as many as the vector units of a processor take. A
-// file for each kind of vector units includes this header and compiles `advanceAs` for it (common/Pack.hpp); that file
-// must not compile anything else, because the linker would take it for all processors.
+// One step of the cyclic law for as many subcontacts side by side as the vector units of a processor take. A file for
+// each kind of vector units compiles `advanceAs` for it (common/Pack.hpp), and nothing else, because the linker would
+// take that for all processors.
 #pragma once
 #include "CyclicState.hpp"
 #include "CyclicStep.hpp"
@@ -17,8 +17,7 @@ struct Numbers { // of a kind of joint
     double lastRatio; // [-] of the shear table, less 1
 };
 
-using Advance = void(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                     const Jumps& jumps, const Mask* pending, int count, double* normalStress);
+using Advance = void(const Numbers& numbers, TableRows* rows, const SideBySide& all);
 Advance advanceOnAny, advanceOnAvx2, advanceOnAvx512;
 
 struct Processor {
@@ -40,8 +39,9 @@ void readEnergy(const CyclicEquations& e, Asked& a);
 
 namespace {
 
-// Subcontacts of a column, wherever they stand in it.
-struct Places {
+// Subcontacts of the columns, wherever they stand in them.
+struct Places : CyclicColumn {
+    Columns columns;
     int at[packed];
     bool together; // whether they stand side by side
 
@@ -57,7 +57,76 @@ struct Places {
         for (int i = 0; i < packed; ++i)
             column[at[i]] = x[i];
     }
-    MASONRY_INLINED void add(double* column, const Pack& x) const { put(column, get(column) + x); }
+    MASONRY_INLINED Pack get(int column) const { return get(columns[column]); }
+    MASONRY_INLINED void put(int column, const Pack& x) const { put(columns[column], x); }
+    MASONRY_INLINED void add(int column, const Pack& x) const { put(column, get(column) + x); }
+
+    MASONRY_INLINED CyclicPoint<Pack> read(const CyclicEquations& e) const {
+        CyclicPoint<Pack> p;
+        p.opening = get(Opening);
+        p.crushing = get(Crushing);
+        p.dilation = get(Dilation);
+        p.slip = get(Slip);
+        p.largestOpening = get(LargestOpening);
+        p.largestClosure = get(LargestClosure);
+        p.tensionDamage = get(TensionDamage);
+        p.shearDamage = get(ShearDamage);
+        p.shearA = get(ShearStressA);
+        p.shearB = get(ShearStressB);
+        p.plasticA = get(PlasticSlipA);
+        p.plasticB = get(PlasticSlipB);
+        p.shearSoftening = get(ShearSoftening);
+        p.shearStiffnessLoss = get(ShearStiffnessLoss);
+        p.capDisplacement = get(CapDisplacement);
+        p.strength = root(get(CapSquared));
+        p.closing = get(ClosingStiffness);
+        p.shearing = get(ShearStiffness);
+        p.left = get(Intact);
+        p.secant = get(Secant);
+        p.hardening = get(SquaredHardening);
+        p.normalStress = e.normal<Pack>(p.opening + get(Irreversible), p.secant, p.closing);
+        return p;
+    }
+    // What did not happen to one of them changes no column.
+    MASONRY_INLINED void write(const CyclicEquations& e, const CyclicPoint<Pack>& p,
+                               const CyclicOutcome<Pack>& out) const {
+        put(Opening, p.opening);
+        put(ShearStressA, p.shearA);
+        put(ShearStressB, p.shearB);
+        if (out.tore | out.dilated) {
+            put(LargestOpening, p.largestOpening);
+            put(TensionDamage, p.tensionDamage);
+            put(ShearDamage, p.shearDamage);
+            put(Intact, p.left);
+            put(Secant, p.secant);
+            put(Reach, e.reach<Pack>(p.left, p.largestOpening));
+        }
+        if (out.slid) {
+            put(Slip, p.slip);
+            put(PlasticSlipA, p.plasticA);
+            put(PlasticSlipB, p.plasticB);
+            put(ShearSoftening, p.shearSoftening);
+            add(LostShear, out.lostShear);
+            if (e.omegaM > 0) {
+                put(ShearStiffnessLoss, p.shearStiffnessLoss);
+                put(ShearStiffness, p.shearing);
+            }
+        }
+        if (out.crushed) {
+            put(LargestClosure, p.largestClosure);
+            put(CapDisplacement, p.capDisplacement);
+            put(CapSquared, p.strength * p.strength);
+            put(ClosingStiffness, p.closing);
+            put(SquaredHardening, p.hardening);
+        }
+        if (out.crushed | out.dilated) {
+            put(Crushing, p.crushing);
+            put(Dilation, p.dilation);
+            put(Irreversible, p.crushing - p.dilation);
+        }
+        add(LostTension, out.lostTension);
+        add(LostCompression, out.lostCompression);
+    }
 };
 
 struct Look { // see advance() in CyclicStep.hpp
@@ -107,85 +176,27 @@ struct Look { // see advance() in CyclicStep.hpp
     }
 };
 
-MASONRY_INLINED void advanceAs(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                               const Jumps& jumps, const Mask* pending, int count, double* normalStress) {
+MASONRY_INLINED void advanceAs(const Numbers& numbers, TableRows* rows, const SideBySide& subcontacts) {
     const CyclicEquations e = numbers.equations;
+    const SideBySide all = subcontacts;
     Places some;
+    some.columns = all.columns;
     for (int from = 0;;) {
         int many = 0; // number of pending subcontacts in this pack; others may lie between them
-        for (; from < count && many < packed; ++from)
-            if (pending[from]) some.at[many++] = from;
+        for (; from < all.count && many < packed; ++from)
+            if (all.pending[from]) some.at[many++] = from;
         if (many == 0) return;
         // A pack that is not full repeats its last subcontact: the same numbers are then written several times.
         for (int i = many; i < packed; ++i)
             some.at[i] = some.at[many - 1];
         some.together = many == packed && some.at[packed - 1] - some.at[0] == packed - 1;
-        const Columns& c = columns;
-        const Pack opening = some.get(jumps.opening), slideA = some.get(jumps.slideA), slideB = some.get(jumps.slideB);
-        CyclicPoint<Pack> p;
-        p.opening = some.get(c[CyclicColumn::Opening]);
-        p.crushing = some.get(c[CyclicColumn::Crushing]);
-        p.dilation = some.get(c[CyclicColumn::Dilation]);
-        p.slip = some.get(c[CyclicColumn::Slip]);
-        p.largestOpening = some.get(c[CyclicColumn::LargestOpening]);
-        p.largestClosure = some.get(c[CyclicColumn::LargestClosure]);
-        p.tensionDamage = some.get(c[CyclicColumn::TensionDamage]);
-        p.shearDamage = some.get(c[CyclicColumn::ShearDamage]);
-        p.shearA = some.get(c[CyclicColumn::ShearStressA]);
-        p.shearB = some.get(c[CyclicColumn::ShearStressB]);
-        p.plasticA = some.get(c[CyclicColumn::PlasticSlipA]);
-        p.plasticB = some.get(c[CyclicColumn::PlasticSlipB]);
-        p.shearSoftening = some.get(c[CyclicColumn::ShearSoftening]);
-        p.shearStiffnessLoss = some.get(c[CyclicColumn::ShearStiffnessLoss]);
-        p.capDisplacement = some.get(c[CyclicColumn::CapDisplacement]);
-        p.strength = root(some.get(c[CyclicColumn::CapSquared]));
-        p.closing = some.get(c[CyclicColumn::ClosingStiffness]);
-        p.shearing = some.get(c[CyclicColumn::ShearStiffness]);
-        p.left = some.get(c[CyclicColumn::Intact]);
-        p.secant = some.get(c[CyclicColumn::Secant]);
-        p.hardening = some.get(c[CyclicColumn::SquaredHardening]);
-        p.normalStress = e.normal<Pack>(p.opening + some.get(c[CyclicColumn::Irreversible]), p.secant, p.closing);
-        const auto out = masonry::advance<Pack>(e, Look{numbers, rows, some.at}, p, opening, slideA, slideB);
-        // what did not happen to one of them changes no column
-        some.put(c[CyclicColumn::Opening], p.opening);
-        some.put(c[CyclicColumn::ShearStressA], p.shearA);
-        some.put(c[CyclicColumn::ShearStressB], p.shearB);
-        if (out.tore | out.dilated) {
-            some.put(c[CyclicColumn::LargestOpening], p.largestOpening);
-            some.put(c[CyclicColumn::TensionDamage], p.tensionDamage);
-            some.put(c[CyclicColumn::ShearDamage], p.shearDamage);
-            some.put(c[CyclicColumn::Intact], p.left);
-            some.put(c[CyclicColumn::Secant], p.secant);
-            some.put(c[CyclicColumn::Reach], e.reach<Pack>(p.left, p.largestOpening));
-        }
-        if (out.slid) {
-            some.put(c[CyclicColumn::Slip], p.slip);
-            some.put(c[CyclicColumn::PlasticSlipA], p.plasticA);
-            some.put(c[CyclicColumn::PlasticSlipB], p.plasticB);
-            some.put(c[CyclicColumn::ShearSoftening], p.shearSoftening);
-            some.add(c[CyclicColumn::LostShear], out.lostShear);
-            if (e.omegaM > 0) {
-                some.put(c[CyclicColumn::ShearStiffnessLoss], p.shearStiffnessLoss);
-                some.put(c[CyclicColumn::ShearStiffness], p.shearing);
-            }
-        }
-        if (out.crushed) {
-            some.put(c[CyclicColumn::LargestClosure], p.largestClosure);
-            some.put(c[CyclicColumn::CapDisplacement], p.capDisplacement);
-            some.put(c[CyclicColumn::CapSquared], p.strength * p.strength);
-            some.put(c[CyclicColumn::ClosingStiffness], p.closing);
-            some.put(c[CyclicColumn::SquaredHardening], p.hardening);
-        }
-        if (out.crushed | out.dilated) {
-            some.put(c[CyclicColumn::Crushing], p.crushing);
-            some.put(c[CyclicColumn::Dilation], p.dilation);
-            some.put(c[CyclicColumn::Irreversible], p.crushing - p.dilation);
-        }
-        some.add(c[CyclicColumn::LostTension], out.lostTension);
-        some.add(c[CyclicColumn::LostCompression], out.lostCompression);
-        some.put(normalStress, p.normalStress);
+        auto p = some.read(e);
+        const auto out = masonry::advance<Pack>(e, Look{numbers, rows, some.at}, p, some.get(all.jumps.opening),
+                                                some.get(all.jumps.slideA), some.get(all.jumps.slideB));
+        some.write(e, p, out);
+        some.put(all.normalStress, p.normalStress);
         for (int i = 0; i < packed; ++i)
-            regime[some.at[i]] = Regime(int(out.regime[i]));
+            all.regime[some.at[i]] = Regime(int(out.regime[i]));
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The equations of the paper's law at one subcontact, each written once. PiecewiseLaw takes them for one subcontact,
-// PiecewiseSideBySide for several: therefore they choose between values and have no branches. They are numbered as in
-// the paper; law/README.md says them in words.
+// The equations of the paper's law at one subcontact, each written once for PiecewiseLaw and for PiecewiseSideBySide,
+// which takes several: therefore they choose between values and have no branches. They are numbered as in the paper;
+// law/README.md says them in words.
 #pragma once
 #include "common/Pack.hpp"
 #include "law/common/CompressionCurve.hpp"

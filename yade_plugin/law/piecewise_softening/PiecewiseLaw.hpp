@@ -20,9 +20,9 @@ public:
     using Column = PiecewiseColumn;
     using Equations = PiecewiseEquations;
 
-    // Whether so many subcontacts that may yield are advanced faster one by one than side by side with the others of
-    // their groups of eight. Side by side, a group costs the same for one as for all: as much as one subcontact by
-    // itself, and the first group as much as two (measured, tests/law/benchmark_law.cpp).
+    // Whether so many subcontacts that may yield are advanced faster one by one than side by side in their groups of
+    // eight. Side by side a group costs as much as one subcontact by itself, and the first group as much as two
+    // (measured, tests/law/benchmark_law.cpp).
     static constexpr bool fasterOneByOne(int many, int groups) { return many <= groups; }
 
     // Throws std::invalid_argument with all problems of the properties at once.
@@ -56,8 +56,8 @@ public:
         return e;
     }
 
-    // One step: takes the state on by the jump and returns the energy dissipated in the step. In place and inlined,
-    // because copies of the state cost as much as the law.
+    // One step: takes the state on by the jump and returns the energy dissipated in it. In place and inlined, because
+    // copies of the state cost as much as the law.
     MASONRY_INLINED Energies advance(const ElasticStiffness& k, PiecewiseState& s, const Jump& jump) const {
         return advance(equations(k), s, jump);
     }
@@ -171,11 +171,6 @@ public:
         return s.normalStress > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
     }
 
-    // Compression damage dc, eq. (21).
-    double compressionDamage(const ElasticStiffness& k, const PiecewiseState& s) const {
-        return own_.cap ? own_.curve.damage(s.largestClosure, stretch(k)) : 0;
-    }
-
     static void show(const PiecewiseEquations& e, const PiecewiseState& s, const ShowField& show) {
         show(field::slip, s.slip);
         show(field::damageTension, s.tensionDamage);
@@ -183,12 +178,6 @@ public:
         show(field::damageCompression, e.cap ? e.curve.damage(s.largestClosure, e.stretch) : 0);
         show(field::crushing, s.crushing);
     }
-
-    // Strength of the cap [Pa] at a largest closure [m], and the closure at which it begins to harden.
-    double compressiveStrength(const ElasticStiffness& k, double largestClosure) const {
-        return own_.curve.strength(largestClosure, stretch(k));
-    }
-    double limitClosure(const ElasticStiffness& k) const { return own_.curve.limit(stretch(k)); }
 
     // The yield functions F1 [Pa], F2 [Pa] and F3 [Pa²] of eqs. (8), and each over the size of its terms [-].
     Yield yield(const ElasticStiffness& k, const PiecewiseState& s) const;
@@ -200,10 +189,6 @@ public:
     std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
 
     std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
-
-    static double coupled(const PiecewiseState& s) { // d_ts, eq. (10)
-        return PiecewiseEquations::coupled(s.tensionDamage, s.shearDamage);
-    }
 
 private:
     // [m/Pa] what lumped units add; nothing where properties were changed to ones softer than what the joint shows

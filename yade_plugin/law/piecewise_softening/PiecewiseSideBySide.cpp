@@ -16,28 +16,27 @@ constexpr int most = Columns::most;
 namespace {
 
 // Advances the subcontacts at which no strength is exceeded, by eqs. (6) and (7), the secant of eq. (11), and the three
-// conditions of eq. (8). A subcontact that needs the whole law keeps its old state, and its entry of `pending` becomes
-// 1.
+// conditions of eq. (8). One that needs the whole law keeps its old state and becomes pending.
 template <bool spatial, bool yielded, bool residual>
 MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
-                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                      double* normalStress, Mask* pending) {
+                                      const SideBySide& subcontacts) {
     const PiecewiseEquations e = given;
+    const SideBySide all = subcontacts;
     const PiecewiseDerived same = ofAll;
     const double limit = e.curve.limit(e.stretch);
-    double* opening = columns[Column::Opening] + at;
-    double* shearStressA = columns[Column::ShearStressA] + at;
-    double* shearStressB = columns[Column::ShearStressB] + at;
-    double* largestOpening = columns[Column::LargestOpening] + at;
-    double* largestClosure = columns[Column::LargestClosure] + at;
-    const double* irreversible = columns[Column::Irreversible] + at;
-    const double* intact = columns[Column::Intact] + at;
-    const double* secant = columns[Column::Secant] + at;
-    const double* reach = columns[Column::Reach] + at;
-    const double* capSquared = columns[Column::CapSquared] + at;
+    double* opening = all.columns[Column::Opening];
+    double* shearStressA = all.columns[Column::ShearStressA];
+    double* shearStressB = all.columns[Column::ShearStressB];
+    double* largestOpening = all.columns[Column::LargestOpening];
+    double* largestClosure = all.columns[Column::LargestClosure];
+    const double* irreversible = all.columns[Column::Irreversible];
+    const double* intact = all.columns[Column::Intact];
+    const double* secant = all.columns[Column::Secant];
+    const double* reach = all.columns[Column::Reach];
+    const double* capSquared = all.columns[Column::CapSquared];
     Mask waiting = 0, open = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
         const double tensileSecant = yielded ? secant[i] : same.secant;
         const double within = yielded ? reach[i] : same.reach;
@@ -48,10 +47,10 @@ MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const Pie
         const double oldB = spatial ? shearStressB[i] : 0;
         const double farthest = largestOpening[i];
         const double closest = largestClosure[i];
-        const auto moved = e.open(oldOpening, plastic, farthest, jumps.opening[i]);
+        const auto moved = e.open(oldOpening, plastic, farthest, all.jumps.opening[i]);
         const double sigma = e.stiffness(moved.elastic, tensileSecant) * moved.elastic;
-        const double a = oldA + e.ks * jumps.slideA[i];
-        const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
+        const double a = oldA + e.ks * all.jumps.slideA[i];
+        const double b = spatial ? oldB + e.ks * all.jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
         const double rest = residual ? e.residualCohesion(moved.elastic) : 0; // most joints have none
         const double closure = e.closure(moved.total, sigma);
@@ -61,13 +60,13 @@ MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const Pie
         const bool elastic =
             e.isElastic({within, bond, squaredCap, hardens}, moved.elastic, sigma, tauSquared, closure, rest) & keeps;
         const Mask stays = elastic ? 1 : 0;
-        normalStress[i] = sigma;
+        all.normalStress[i] = sigma;
         opening[i] = pick(stays, moved.total, oldOpening);
         shearStressA[i] = pick(stays, a, oldA);
         if (spatial) shearStressB[i] = pick(stays, b, oldB);
         largestOpening[i] = pick(stays, moved.farthest, farthest);
         largestClosure[i] = pick(stays, closure > closest ? closure : closest, closest);
-        pending[i] = 1 - stays;
+        all.pending[i] = 1 - stays;
         waiting += 1 - stays;
         if (yielded) open += (moved.before > 0) & (tensileSecant == 0) ? 1 : 0;
     }
@@ -76,25 +75,20 @@ MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const Pie
 
 template <bool spatial, bool yielded>
 MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll,
-                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                      double* normalStress, Mask* pending) {
-    return e.cr > 0
-               ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-               : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+                                      const SideBySide& all) {
+    return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, all)
+                    : stayElasticAs<spatial, yielded, false>(e, ofAll, all);
 }
 
 } // namespace
 
 MASONRY_VECTORISED
-Waiting stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
-                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Waiting stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const SideBySide& all) {
     const bool yielded = neverYielded == nullptr;
     const PiecewiseDerived ofAll = yielded ? PiecewiseDerived{} : *neverYielded;
-    if (jumps.plane)
-        return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                       : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
-    return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                   : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    if (all.jumps.plane)
+        return yielded ? stayElasticAs<false, true>(e, ofAll, all) : stayElasticAs<false, false>(e, ofAll, all);
+    return yielded ? stayElasticAs<true, true>(e, ofAll, all) : stayElasticAs<true, false>(e, ofAll, all);
 }
 
 // ---- open subcontacts that carry nothing ----------------------------------------------------------------------------
@@ -108,32 +102,31 @@ struct Open {                                          // scratch of a step
 };
 
 // Marks those in `s.here`. Returns how many there are.
-MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& columns, const Jumps& jumps, int count,
-                              double mostTension, double mostShear, const Mask* pending, Open& s) {
-    const PiecewiseEquations e = given;
-    const double* opening = columns[Column::Opening];
-    const double* shearStressA = columns[Column::ShearStressA];
-    const double* shearStressB = columns[Column::ShearStressB];
-    const double* largestOpening = columns[Column::LargestOpening];
-    const double* irreversible = columns[Column::Irreversible];
-    const double* tensionDamage = columns[Column::TensionDamage];
-    const double* shearDamage = columns[Column::ShearDamage];
-    const double* intact = columns[Column::Intact];
-    const double* secant = columns[Column::Secant];
+MASONRY_INLINED Mask findOpen(const PiecewiseEquations& e, const SideBySide& all, double mostTension, double mostShear,
+                              Open& s) {
+    const double* opening = all.columns[Column::Opening];
+    const double* shearStressA = all.columns[Column::ShearStressA];
+    const double* shearStressB = all.columns[Column::ShearStressB];
+    const double* largestOpening = all.columns[Column::LargestOpening];
+    const double* irreversible = all.columns[Column::Irreversible];
+    const double* tensionDamage = all.columns[Column::TensionDamage];
+    const double* shearDamage = all.columns[Column::ShearDamage];
+    const double* intact = all.columns[Column::Intact];
+    const double* secant = all.columns[Column::Secant];
     Mask many = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
-        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
+    for (int i = 0; i < all.count; ++i) {
+        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], all.jumps.opening[i]);
         const double inTension = tensionDamage[i], inShear = shearDamage[i], holds = secant[i];
         const double bond = intact[i], strength = e.residualCohesion(moved.elastic) + e.cp * bond;
-        const Mask isPending = pending[i];
+        const Mask isPending = all.pending[i];
         const bool carriesNothing = (moved.before > 0) & (moved.elastic > 0) & (holds == 0) & (strength == 0) &
                                     (inTension >= mostTension) & (inShear >= mostShear);
         s.total[i] = moved.total;
         s.elastic[i] = moved.elastic;
         s.farthest[i] = moved.farthest;
-        s.trialA[i] = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
-        s.trialB[i] = shearStressB[i] + e.ks * jumps.slideB[i];
+        s.trialA[i] = shearStressA[i] + e.ks * all.jumps.slideA[i]; // eq. (7)
+        s.trialB[i] = shearStressB[i] + e.ks * all.jumps.slideB[i];
         s.here[i] = carriesNothing ? isPending : 0;
         many += carriesNothing ? isPending : 0;
     }
@@ -144,26 +137,26 @@ MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& co
 
 MASONRY_VECTORISED
 Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, const SofteningTable& shear,
-               const Columns& columns, Regime* regime, const Jumps& jumps, Mask* pending, int count,
-               double* normalStress) {
+               const SideBySide& subcontacts) {
     const PiecewiseEquations e = given;
+    const SideBySide all = subcontacts;
     Open s;
-    if (!findOpen(e, columns, jumps, count, tension.mostDamage(), shear.mostDamage(), pending, s)) return 0;
+    if (!findOpen(e, all, tension.mostDamage(), shear.mostDamage(), s)) return 0;
     Mask many = 0;
-    double* opening = columns[Column::Opening];
-    double* shearStressA = columns[Column::ShearStressA];
-    double* shearStressB = columns[Column::ShearStressB];
-    double* largestOpening = columns[Column::LargestOpening];
-    double* slip = columns[Column::Slip];
-    double* lostShear = columns[Column::LostShear];
-    double* reach = columns[Column::Reach];
-    const double* intact = columns[Column::Intact];
+    double* opening = all.columns[Column::Opening];
+    double* shearStressA = all.columns[Column::ShearStressA];
+    double* shearStressB = all.columns[Column::ShearStressB];
+    double* largestOpening = all.columns[Column::LargestOpening];
+    double* slip = all.columns[Column::Slip];
+    double* lostShear = all.columns[Column::LostShear];
+    double* reach = all.columns[Column::Reach];
+    const double* intact = all.columns[Column::Intact];
     Mask slides[most];
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double oldA = shearStressA[i], oldB = shearStressB[i];
         const double oldOpening = opening[i], oldFarthest = largestOpening[i];
-        const double oldSlip = slip[i], oldLost = lostShear[i], oldReach = reach[i], oldStress = normalStress[i];
+        const double oldSlip = slip[i], oldLost = lostShear[i], oldReach = reach[i], oldStress = all.normalStress[i];
         const double size = std::sqrt(s.trialA[i] * s.trialA[i] + s.trialB[i] * s.trialB[i]);
         const auto slid = e.slide(size, 0, s.elastic[i], intact[i], 0);
         const double a = slid.share * s.trialA[i], b = slid.share * s.trialB[i];
@@ -178,13 +171,13 @@ Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, c
         slip[i] = here ? oldSlip + slid.slip : oldSlip;
         lostShear[i] = here & (slid.slip > 0) ? oldLost + mean * slid.slip : oldLost;
         reach[i] = here ? newReach : oldReach;
-        normalStress[i] = here ? 0 : oldStress;
+        all.normalStress[i] = here ? 0 : oldStress;
         slides[i] = here & slid.slides ? 1 : 0;
-        pending[i] -= here ? 1 : 0;
+        all.pending[i] -= here ? 1 : 0;
         many += here ? 1 : 0;
     }
-    for (int i = 0; i < count; ++i)
-        if (slides[i]) regime[i] = Regime::Slipping;
+    for (int i = 0; i < all.count; ++i)
+        if (slides[i]) all.regime[i] = Regime::Slipping;
     return many;
 }
 
@@ -220,11 +213,10 @@ void markYielding(const PiecewiseEquations& e, const PiecewiseDerived& neverYiel
 }
 
 MASONRY_VECTORISED
-void rememberElastic(const PiecewiseEquations& given, const Columns& columns, std::size_t at, int count,
-                     const double* opening) {
+void rememberElastic(const PiecewiseEquations& given, const Columns& columns, int count, const double* opening) {
     const PiecewiseEquations e = given;
-    double* largestOpening = columns[Column::LargestOpening] + at;
-    double* largestClosure = columns[Column::LargestClosure] + at;
+    double* largestOpening = columns[Column::LargestOpening];
+    double* largestClosure = columns[Column::LargestClosure];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double farthest = largestOpening[i], closest = largestClosure[i];
@@ -253,46 +245,35 @@ struct Scratch { // of subcontacts side by side, for one step
     Mask open[most], wanted[most], regime[most];
 };
 
-// The step of the pending subcontacts, in the parts of PiecewiseLaw::advance. Each part is a pass over the columns that
-// begin at the first subcontact of the batch. A part that no subcontact needs is left out. Tables and exponentials are
-// evaluated one by one, only for the subcontacts that need them.
-struct SideBySide {
-    const PiecewiseEquations& e;
-    const Columns& columns;
-    TableRows* rows;
-    const Jumps& jumps;
-    const Mask* pending;
-    int count;
-};
+// The step of the pending subcontacts, in the parts of PiecewiseLaw::advance. Each part is a pass over the columns. A
+// part that no subcontact needs is left out. Tables and exponentials are evaluated one by one, only for the subcontacts
+// that need them.
 
 // 1, opening. Tells whether a crack of one tears further.
-MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tension, Scratch& s) {
-    const PiecewiseEquations e = all.e;
-    const Columns& columns = all.columns;
-    const Jumps& jumps = all.jumps;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    double* opening = columns[Column::Opening];
-    double* shearStressA = columns[Column::ShearStressA];
-    double* shearStressB = columns[Column::ShearStressB];
-    double* largestOpening = columns[Column::LargestOpening];
-    double* irreversible = columns[Column::Irreversible];
-    double* tensionDamage = columns[Column::TensionDamage];
-    double* shearDamage = columns[Column::ShearDamage];
-    double* intact = columns[Column::Intact];
-    double* secant = columns[Column::Secant];
+MASONRY_INLINED Mask openAll(const PiecewiseEquations& given, const SideBySide& all, const SofteningTable& tension,
+                             TableRows* rows, Scratch& s) {
+    const PiecewiseEquations e = given;
+    double* opening = all.columns[Column::Opening];
+    double* shearStressA = all.columns[Column::ShearStressA];
+    double* shearStressB = all.columns[Column::ShearStressB];
+    double* largestOpening = all.columns[Column::LargestOpening];
+    double* irreversible = all.columns[Column::Irreversible];
+    double* tensionDamage = all.columns[Column::TensionDamage];
+    double* shearDamage = all.columns[Column::ShearDamage];
+    double* intact = all.columns[Column::Intact];
+    double* secant = all.columns[Column::Secant];
     Mask tears = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
-        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
-        const double a = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
-        const double b = shearStressB[i] + e.ks * jumps.slideB[i];
+    for (int i = 0; i < all.count; ++i) {
+        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], all.jumps.opening[i]);
+        const double a = shearStressA[i] + e.ks * all.jumps.slideA[i]; // eq. (7)
+        const double b = shearStressB[i] + e.ks * all.jumps.slideB[i];
         s.total[i] = moved.total;
         s.before[i] = moved.before;
         s.elastic[i] = moved.elastic;
         s.farthest[i] = moved.farthest;
         s.open[i] = moved.open;
-        s.wanted[i] = moved.tears ? pending[i] : 0;
+        s.wanted[i] = moved.tears ? all.pending[i] : 0;
         s.regime[i] = Mask(Regime::Elastic);
         s.oldStiffness[i] = e.stiffness(moved.before, secant[i]);
         s.trialA[i] = a;
@@ -306,20 +287,20 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
     }
     if (tears) {
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             const auto at = e.tensionReading(s.elastic[i], s.shearDamage[i]);
             s.ratio[i] = at.ratio;
             s.shift[i] = at.shift;
         }
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             if (!s.wanted[i]) continue;
-            const double damage = tension.damage(s.ratio[i], s.shift[i], all.rows[i].tension);
+            const double damage = tension.damage(s.ratio[i], s.shift[i], rows[i].tension);
             if (!(damage > s.tensionDamage[i])) continue;
             s.tensionDamage[i] = damage;
             s.regime[i] = Mask(Regime::Opening);
         }
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             s.intact[i] = PiecewiseEquations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
         }
@@ -328,18 +309,16 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
 }
 
 // 2, Coulomb slip. Tells whether one slides.
-MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tension, const SofteningTable& shear,
-                              Scratch& s) {
-    const PiecewiseEquations e = all.e;
-    const Mask* pending = all.pending;
-    const int count = all.count;
+MASONRY_INLINED Mask slideAll(const PiecewiseEquations& given, const SideBySide& all, const SofteningTable& tension,
+                              const SofteningTable& shear, TableRows* rows, Scratch& s) {
+    const PiecewiseEquations e = given;
     const double* slip = all.columns[Column::Slip];
     Mask slides = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
         s.sigma[i] = s.newStiffness[i] * s.elastic[i];
-        s.wanted[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i], s.elastic[i]) ? pending[i] : 0;
+        s.wanted[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i], s.elastic[i]) ? all.pending[i] : 0;
         s.share[i] = 1;
         s.slip[i] = 0;
         s.dilation[i] = 0;
@@ -347,26 +326,26 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
     }
     if (slides) {
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             const auto at = e.shearReading(s.size[i], s.sigma[i], s.elastic[i], slip[i], s.tensionDamage[i]);
             s.ratio[i] = at.ratio;
             s.shift[i] = at.shift;
             s.dilatancy[i] = s.open[i] ? 0 : e.tanPsi;
         }
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             if (!s.wanted[i] || !(s.shearDamage[i] < 1)) continue;
-            const double damage = shear.damage(s.ratio[i], s.shift[i], all.rows[i].shear);
+            const double damage = shear.damage(s.ratio[i], s.shift[i], rows[i].shear);
             if (!(damage > s.shearDamage[i])) continue;
             s.shearDamage[i] = damage;
             if (!e.relaxes(s.farthest[i])) continue;
             const auto reopened = e.tensionReading(s.farthest[i], damage);
-            const double torn = tension.damage(reopened.ratio, reopened.shift, all.rows[i].tension);
+            const double torn = tension.damage(reopened.ratio, reopened.shift, rows[i].tension);
             s.tensionDamage[i] = std::max(s.tensionDamage[i], torn);
         }
-        for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
+        for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < all.count; ++i)
             if (s.wanted[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             s.intact[i] = PiecewiseEquations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
             s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
@@ -382,17 +361,14 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
 }
 
 // 3, cap. Tells whether one crushes or hardens.
-MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
-    const PiecewiseEquations e = all.e;
-    const Columns& columns = all.columns;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    const double* largestClosure = columns[Column::LargestClosure];
+MASONRY_INLINED Mask crushAll(const PiecewiseEquations& given, const SideBySide& all, Scratch& s) {
+    const PiecewiseEquations e = given;
+    const double* largestClosure = all.columns[Column::LargestClosure];
     Mask crushes = 0;
     const double limit = e.curve.limit(e.stretch);
     const double closing = e.cap ? -1 : 0; // sign of a closure; 0: without a cap none counts
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double a = s.share[i] * s.trialA[i];
         const double b = s.share[i] * s.trialB[i];
         const double closest = largestClosure[i];
@@ -402,21 +378,21 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
         s.left[i] = 1;
         s.closure[i] = 0;
         s.crushingSlip[i] = 0;
-        crushes |= (passes | ((closure > closest) & (closure > limit))) ? pending[i] : 0;
+        crushes |= (passes | ((closure > closest) & (closure > limit))) ? all.pending[i] : 0;
     }
     if (crushes && e.cap) {
-        double* capSquared = columns[Column::CapSquared];
+        double* capSquared = all.columns[Column::CapSquared];
         Mask beyond = 0;
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             s.fc[i] = e.curve.upToMiddle(s.closest[i], e.stretch);
-            s.wanted[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? pending[i] : 0;
+            s.wanted[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? all.pending[i] : 0;
             beyond |= s.wanted[i];
         }
-        for (int i = 0; beyond && i < count; ++i)
+        for (int i = 0; beyond && i < all.count; ++i)
             if (s.wanted[i]) s.fc[i] = e.curve.beyondMiddle(s.closest[i], e.stretch);
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < all.count; ++i) {
             const double a = s.share[i] * s.trialA[i];
             const double b = s.share[i] * s.trialB[i];
             const double old = capSquared[i];
@@ -426,7 +402,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
             s.closure[i] = crushed.closure;
             s.crushingSlip[i] = crushed.slip;
             s.regime[i] = crushed.crushes ? Mask(Regime::Crushing) : s.regime[i];
-            capSquared[i] = pending[i] ? s.fc[i] * s.fc[i] : old;
+            capSquared[i] = all.pending[i] ? s.fc[i] * s.fc[i] : old;
         }
     } else
         crushes = 0;
@@ -435,14 +411,11 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
 
 // The irreversible parts of the opening; s.closure and s.dilation become what they have grown by.
 MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
-    const Columns& columns = all.columns;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    double* irreversible = columns[Column::Irreversible];
-    double* crushing = columns[Column::Crushing];
-    double* dilation = columns[Column::Dilation];
+    double* irreversible = all.columns[Column::Irreversible];
+    double* crushing = all.columns[Column::Crushing];
+    double* dilation = all.columns[Column::Dilation];
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double oldCrushing = crushing[i];
         const double oldDilation = dilation[i];
         const double old = irreversible[i];
@@ -452,24 +425,21 @@ MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
         s.closure[i] = newCrushing - oldCrushing;
         s.dilation[i] = newDilation - oldDilation;
         s.elastic[i] = s.total[i] + now;
-        crushing[i] = pending[i] ? newCrushing : oldCrushing;
-        dilation[i] = pending[i] ? newDilation : oldDilation;
-        irreversible[i] = pending[i] ? now : old;
+        crushing[i] = all.pending[i] ? newCrushing : oldCrushing;
+        dilation[i] = all.pending[i] ? newDilation : oldDilation;
+        irreversible[i] = all.pending[i] ? now : old;
     }
 }
 
 // Slip, and what was lost in shear and compression.
 MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
-    const Columns& columns = all.columns;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    double* slip = columns[Column::Slip];
-    const double* shearStressA = columns[Column::ShearStressA];
-    const double* shearStressB = columns[Column::ShearStressB];
-    double* lostShear = columns[Column::LostShear];
-    double* lostCompression = columns[Column::LostCompression];
+    double* slip = all.columns[Column::Slip];
+    const double* shearStressA = all.columns[Column::ShearStressA];
+    const double* shearStressB = all.columns[Column::ShearStressB];
+    double* lostShear = all.columns[Column::LostShear];
+    double* lostCompression = all.columns[Column::LostCompression];
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double a = s.left[i] * (s.share[i] * s.trialA[i]);
         const double b = s.left[i] * (s.share[i] * s.trialB[i]);
         const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
@@ -484,75 +454,69 @@ MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
         const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
         const double newShear = oldShear + (slips ? inShear : 0);
         const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
-        slip[i] = pending[i] ? newSlip : oldSlip;
-        lostShear[i] = pending[i] ? newShear : oldShear;
-        lostCompression[i] = pending[i] ? newCompression : oldCompression;
+        slip[i] = all.pending[i] ? newSlip : oldSlip;
+        lostShear[i] = all.pending[i] ? newShear : oldShear;
+        lostCompression[i] = all.pending[i] ? newCompression : oldCompression;
     }
 }
 
 // Openings and stresses, and what was lost in tension.
-MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* normalStress) {
-    const Columns& columns = all.columns;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    double* opening = columns[Column::Opening];
-    double* shearStressA = columns[Column::ShearStressA];
-    double* shearStressB = columns[Column::ShearStressB];
-    double* largestOpening = columns[Column::LargestOpening];
-    double* largestClosure = columns[Column::LargestClosure];
+MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s) {
+    double* opening = all.columns[Column::Opening];
+    double* shearStressA = all.columns[Column::ShearStressA];
+    double* shearStressB = all.columns[Column::ShearStressB];
+    double* largestOpening = all.columns[Column::LargestOpening];
+    double* largestClosure = all.columns[Column::LargestClosure];
     Mask tore = 0;
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double oldOpening = opening[i];
         const double oldA = shearStressA[i];
         const double oldB = shearStressB[i];
         const double oldFarthest = largestOpening[i];
         const double oldClosest = largestClosure[i];
-        const double oldStress = normalStress[i];
+        const double oldStress = all.normalStress[i];
         const double a = s.left[i] * (s.share[i] * s.trialA[i]);
         const double b = s.left[i] * (s.share[i] * s.trialB[i]);
         s.torn[i] =
             PiecewiseEquations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
                                               s.sigma[i], s.before[i], s.elastic[i]);
-        tore |= s.oldStiffness[i] != s.newStiffness[i] ? pending[i] : 0;
-        opening[i] = pending[i] ? s.total[i] : oldOpening;
-        shearStressA[i] = pending[i] ? a : oldA;
-        shearStressB[i] = pending[i] ? b : oldB;
-        largestOpening[i] = pending[i] ? s.farthest[i] : oldFarthest;
-        largestClosure[i] = pending[i] ? s.closest[i] : oldClosest;
-        normalStress[i] = pending[i] ? s.sigma[i] : oldStress;
+        tore |= s.oldStiffness[i] != s.newStiffness[i] ? all.pending[i] : 0;
+        opening[i] = all.pending[i] ? s.total[i] : oldOpening;
+        shearStressA[i] = all.pending[i] ? a : oldA;
+        shearStressB[i] = all.pending[i] ? b : oldB;
+        largestOpening[i] = all.pending[i] ? s.farthest[i] : oldFarthest;
+        largestClosure[i] = all.pending[i] ? s.closest[i] : oldClosest;
+        all.normalStress[i] = all.pending[i] ? s.sigma[i] : oldStress;
     }
     if (tore) {
-        double* lostTension = columns[Column::LostTension];
+        double* lostTension = all.columns[Column::LostTension];
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i)
-            lostTension[i] += pending[i] ? s.torn[i] : 0;
+        for (int i = 0; i < all.count; ++i)
+            lostTension[i] += all.pending[i] ? s.torn[i] : 0;
     }
 }
 
 // Damage, and what follows from it.
-MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
-    const PiecewiseEquations e = all.e;
-    const Columns& columns = all.columns;
-    const Mask* pending = all.pending;
-    const int count = all.count;
-    double* tensionDamage = columns[Column::TensionDamage];
-    double* shearDamage = columns[Column::ShearDamage];
-    double* intact = columns[Column::Intact];
-    double* secant = columns[Column::Secant];
-    double* reach = columns[Column::Reach];
+MASONRY_INLINED void keepDamage(const PiecewiseEquations& given, const SideBySide& all, Scratch& s) {
+    const PiecewiseEquations e = given;
+    double* tensionDamage = all.columns[Column::TensionDamage];
+    double* shearDamage = all.columns[Column::ShearDamage];
+    double* intact = all.columns[Column::Intact];
+    double* secant = all.columns[Column::Secant];
+    double* reach = all.columns[Column::Reach];
     MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < all.count; ++i) {
         const double oldTension = tensionDamage[i];
         const double oldShear = shearDamage[i];
         const double oldIntact = intact[i];
         const double oldSecant = secant[i];
         const double oldReach = reach[i];
-        tensionDamage[i] = pending[i] ? s.tensionDamage[i] : oldTension;
-        shearDamage[i] = pending[i] ? s.shearDamage[i] : oldShear;
-        intact[i] = pending[i] ? s.intact[i] : oldIntact;
-        secant[i] = pending[i] ? s.secant[i] : oldSecant;
-        reach[i] = pending[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
+        tensionDamage[i] = all.pending[i] ? s.tensionDamage[i] : oldTension;
+        shearDamage[i] = all.pending[i] ? s.shearDamage[i] : oldShear;
+        intact[i] = all.pending[i] ? s.intact[i] : oldIntact;
+        secant[i] = all.pending[i] ? s.secant[i] : oldSecant;
+        reach[i] = all.pending[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
     }
 }
 
@@ -560,21 +524,20 @@ MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
 
 MASONRY_VECTORISED
 void advanceSideBySide(const PiecewiseEquations& given, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
-                       int count, double* normalStress) {
+                       TableRows* rows, const SideBySide& subcontacts) {
     const PiecewiseEquations e = given;
-    const SideBySide all{e, columns, rows, jumps, pending, count};
+    const SideBySide all = subcontacts;
     Scratch s;
-    const Mask tears = openAll(all, tension, s);
-    const Mask slides = slideAll(all, tension, shear, s);
-    const Mask crushes = crushAll(all, s);
+    const Mask tears = openAll(e, all, tension, rows, s);
+    const Mask slides = slideAll(e, all, tension, shear, rows, s);
+    const Mask crushes = crushAll(e, all, s);
     if (crushes || (slides && e.tanPsi > 0)) keepIrreversible(all, s);
     if (crushes || slides) keepSlip(all, s);
-    keepStresses(all, s, normalStress);
-    if (tears || slides) keepDamage(all, s);
-    for (int i = 0; i < count; ++i) {
-        const Regime old = regime[i];
-        regime[i] = pending[i] ? Regime(s.regime[i]) : old;
+    keepStresses(all, s);
+    if (tears || slides) keepDamage(e, all, s);
+    for (int i = 0; i < all.count; ++i) {
+        const Regime old = all.regime[i];
+        all.regime[i] = all.pending[i] ? Regime(s.regime[i]) : old;
     }
 }
 
@@ -583,38 +546,38 @@ void advanceSideBySide(const PiecewiseEquations& given, const SofteningTable& te
 namespace {
 
 template <bool yielded>
-MASONRY_INLINED void addEnergiesAs(double kn, double ks, const Columns& columns, std::size_t at, int count,
-                                   const double* area, LaneSums& sums) {
-    const double* opening = columns[Column::Opening] + at;
-    const double* shearStressA = columns[Column::ShearStressA] + at;
-    const double* shearStressB = columns[Column::ShearStressB] + at;
+MASONRY_INLINED void addEnergiesAs(double kn, double ks, const Columns& columns, int count, const double* area,
+                                   LaneSums& sums) {
+    const double* opening = columns[Column::Opening];
+    const double* shearStressA = columns[Column::ShearStressA];
+    const double* shearStressB = columns[Column::ShearStressB];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        const double elastic = yielded ? opening[i] + columns[Column::Irreversible][at + i] : opening[i];
-        const double stiffness = yielded && elastic > 0 ? columns[Column::Secant][at + i] : kn;
+        const double elastic = yielded ? opening[i] + columns[Column::Irreversible][i] : opening[i];
+        const double stiffness = yielded && elastic > 0 ? columns[Column::Secant][i] : kn;
         const double tauSquared = shearStressA[i] * shearStressA[i] + shearStressB[i] * shearStressB[i];
         const double normal = area[i] * PiecewiseEquations::storedNormal(stiffness * elastic, elastic);
         sums.storedTension[i] += elastic > 0 ? normal : 0;
         sums.storedCompression[i] += elastic > 0 ? 0 : normal;
         sums.storedShear[i] += area[i] * PiecewiseEquations::storedShear(tauSquared, ks);
         if (!yielded) continue;
-        sums.lostTension[i] += area[i] * columns[Column::LostTension][at + i];
-        sums.lostShear[i] += area[i] * columns[Column::LostShear][at + i];
-        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][at + i];
+        sums.lostTension[i] += area[i] * columns[Column::LostTension][i];
+        sums.lostShear[i] += area[i] * columns[Column::LostShear][i];
+        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][i];
     }
 }
 
 } // namespace
 
 MASONRY_VECTORISED
-void addEnergies(const PiecewiseEquations& e, const Columns& columns, std::size_t at, int count, bool yielded,
-                 const double* area, LaneSums& sums) {
+void addEnergies(const PiecewiseEquations& e, const Columns& columns, int count, bool yielded, const double* area,
+                 LaneSums& sums) {
     if (yielded)
-        count == lanes ? addEnergiesAs<true>(e.kn, e.ks, columns, at, lanes, area, sums)
-                       : addEnergiesAs<true>(e.kn, e.ks, columns, at, count, area, sums);
+        count == lanes ? addEnergiesAs<true>(e.kn, e.ks, columns, lanes, area, sums)
+                       : addEnergiesAs<true>(e.kn, e.ks, columns, count, area, sums);
     else
-        count == lanes ? addEnergiesAs<false>(e.kn, e.ks, columns, at, lanes, area, sums)
-                       : addEnergiesAs<false>(e.kn, e.ks, columns, at, count, area, sums);
+        count == lanes ? addEnergiesAs<false>(e.kn, e.ks, columns, lanes, area, sums)
+                       : addEnergiesAs<false>(e.kn, e.ks, columns, count, area, sums);
 }
 
 } // namespace masonry

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The paper's law on subcontacts side by side in columns, with the equations that PiecewiseLaw takes for one. A marked
-// function uses the vector units, and tells the same numbers as the law for one to the last bit.
+// The paper's law on subcontacts side by side in columns, with the equations of PiecewiseLaw and the same numbers to
+// the last bit.
 //
-// So the order of a step stands twice: in PiecewiseLaw::advance for one subcontact, and here in passes over a batch of
-// up to 32. Written once for packs of four or eight, as the step of the cyclic law is, it gives the same bits in 250
-// lines less. But where most subcontacts yield, such a step took 18 % (slip), 24 % (opening), 25 % (dilatancy) and 53 %
-// (crushing) longer with AVX2. The profile shows why: a step is one chain of divisions and roots, each of which needs
-// the result of the one before, and a pack waits for each of them. A pass over a batch has eight packs at hand that do
-// not depend on each other, and calculates with the next one meanwhile. Two packs at a time took longer still: their
-// numbers do not fit into the registers. The cyclic law waits likewise, but its step has so many cases that passes over
-// all of them would cost more.
+// So the order of a step stands twice: in PiecewiseLaw::advance, and here in passes over a batch of up to 32. Written
+// once for packs, as the step of the cyclic law is, it took 18 % to 53 % longer where most subcontacts yield: a step is
+// one chain of divisions and roots, and a pack waits for each of them, while a pass calculates with the next pack
+// meanwhile. The step of the cyclic law has so many cases that passes over all of them would cost more.
 #pragma once
 #include "PiecewiseEquations.hpp"
 #include "PiecewiseState.hpp"
@@ -59,29 +55,25 @@ constexpr double marginOfIntact = 1e-9;
 // See LawColumns::findYielding() and LawColumns::remember().
 void markYielding(const PiecewiseEquations& equations, const PiecewiseDerived& neverYielded, int count,
                   const double* opening, const double* slideA, const double* slideB, Mask* yielding);
-void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count,
-                     const double* opening);
+void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, int count, const double* opening);
 
-// One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`. If
-// none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns from Crushing on are
-// not read; else it is null.
-Waiting stayElastic(const PiecewiseEquations& equations, const PiecewiseDerived* neverYielded, const Columns& columns,
-                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+// One step of the subcontacts that stay elastic in it. The others stay as they were and become pending. If none of all
+// has ever yielded, `neverYielded` is what holds for all of them, and their columns from Crushing on are not read; else
+// it is null.
+Waiting stayElastic(const PiecewiseEquations& equations, const PiecewiseDerived* neverYielded, const SideBySide& all);
 
-// One step of those of the subcontacts marked in `pending` that are open before and after it, carry nothing but
-// round-off and take no more damage: most of those that yield where joints are dry. Their steps are the same as by
-// advanceSideBySide() below in a small part of its time. They are taken out of `pending`; gives how many they are.
+// One step of the pending subcontacts that are open before and after it, carry nothing but round-off and take no more
+// damage: most of those that yield where joints are dry. Their steps are the same as by advanceSideBySide() in a small
+// part of its time. They are pending no more; gives how many they are.
 Mask slideOpen(const PiecewiseEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
-               const Columns& columns, Regime* regime, const Jumps& jumps, Mask* pending, int count,
-               double* normalStress);
+               const SideBySide& all);
 
-// One step of those of the first `count` subcontacts that are marked in `pending`.
+// One step of the pending subcontacts.
 void advanceSideBySide(const PiecewiseEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
-                       int count, double* normalStress);
+                       TableRows* rows, const SideBySide& all);
 
 // Adds the energies of up to eight joints at a point; `yielded` tells whether one of them has ever yielded.
-void addEnergies(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count, bool yielded,
+void addEnergies(const PiecewiseEquations& equations, const Columns& columns, int count, bool yielded,
                  const double* area, LaneSums& sums);
 
 } // namespace masonry
