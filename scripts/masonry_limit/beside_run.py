@@ -261,7 +261,7 @@ class Bounds(Answers):
         if not self._task.ready(1, MESSAGE_DELAY * wait):
             if not wait:
                 return self.drop()
-            say("waiting for limit analysis to draw the mechanism")
+            say("waiting for limit analysis to write the collapse mechanism")
         for name, data in self._task.result(1).items():
             with replaced(os.path.join(directory, name), "wb") as file:
                 file.write(data)

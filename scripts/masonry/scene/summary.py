@@ -6,8 +6,8 @@ import collections
 import math
 import statistics
 
-from ..bricks import Bricks, summary
 from ..materials import loadingBlock
+from ..bricks import Bricks, summary
 from ..terminal import say
 from ..units import GRAVITY
 

@@ -144,10 +144,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
                 raise Collapsed("the platen has come down by half a course")
         running.show(
             at.done / most,
-            lambda: (
-                f"{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
-                " the elastic"
-            ),
+            lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
             at.quiet == CONSECUTIVE_CHECKS or at.done >= most,
         )
     if at.quiet < CONSECUTIVE_CHECKS:
