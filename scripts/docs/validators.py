@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a command takes, in words, as its validators say it: a validator is asked to refuse something
-that fits none.
+"""What a command takes, in words, as its validators say it: each is asked to refuse something that
+fits none.
 
 So the unit and the bounds that the site shows are those that the check has
 (:mod:`masonry.arguments`).

@@ -53,6 +53,14 @@ def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     assert scene.model.supports.slowest() == approx(expected, rel=0.03)
 
 
+@mark.parametrize("plane, slender", [(True, False), (False, True)])
+def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
+    box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)
+    supports = SimpleNamespace(slowest=lambda: 0.0)
+    scene = SimpleNamespace(description=box, model=SimpleNamespace(supports=supports))
+    assert rest.isSlender(scene) == slender
+
+
 @mark.parametrize("turned", [0, 90])
 def test_without_tension_the_slowest_period_is_about_the_longer_side(tmp_path, turned):
     """T = 2π √(I/(k b²/12 - W h/2)), I = m (b²/12 + h²/3), of the shorter side b."""
@@ -82,14 +90,6 @@ def test_the_period_is_that_of_small_motions_also_where_a_larger_one_lifts_off(t
     stiffness = soil * side**2 / 12 - 1000 * side**2 * high * G * middle
     [found] = [a["value"] for a in scene.answers if a["name"] == "first_period"]
     assert found == approx(2 * math.pi * math.sqrt(inertia / stiffness), rel=0.01)
-
-
-@mark.parametrize("plane, slender", [(True, False), (False, True)])
-def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
-    box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)
-    supports = SimpleNamespace(slowest=lambda: 0.0)
-    scene = SimpleNamespace(description=box, model=SimpleNamespace(supports=supports))
-    assert rest.isSlender(scene) == slender
 
 
 def test_small_horizontal_loads_must_be_carried_on_their_own(tmp_path):

@@ -284,7 +284,9 @@ def test_rows_that_were_too_fast_are_counted(tmp_path, capsys):
     measures = {PEAKS: [*map(str, range(100, 124))], "too_fast": fast}
     folder = writeStudy(tmp_path / "study", measures)
     assert report.main([folder, "--no-pictures"]) == 0
-    assert "4 of 24 rows, all in the numbers above, were pushed too fast" in " ".join(capsys.readouterr().out.split())
+    assert "4 of 24 rows, all in the numbers above, were pushed too fast" in " ".join(
+        capsys.readouterr().out.split()
+    )
 
 
 def test_properties_that_were_drawn_with_a_correlation_have_shapley_effects(tmp_path, capsys):

@@ -744,11 +744,10 @@ def measures(run):
 
 
 def headline(run, end=False, grows=False):
-    """The peak of a push and its bound in a line, from the entries of run.json; empty without a
-    push.
+    """Peak and bound of a push in a line, from the entries of run.json; empty without a push.
 
-    :param end: whether the force at the end stands in place of the bound
-    :param grows: whether the force still grows at the end, so that it has no peak
+    :param end: whether the force at the end is in it, not the bound; ``grows``: whether it has no
+        peak, because it still grows there
     """
     at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
     keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")

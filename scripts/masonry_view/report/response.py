@@ -278,7 +278,7 @@ def energy(record):
     known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}
     rare = ("refining_J", "handing_J")  # where joints get points, or turn into contacts
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
-    of = lambda kind: [f"{n}_J" for n in known if f"{n}_J" in columns and known[n][1] == kind]
+    of = lambda role: [f"{n}_J" for n in known if f"{n}_J" in columns and known[n][1] == role]
     inputs, elastic, spent = of("in"), of("stored"), of("spent")
     total = sum(map(change, inputs))
     part = lambda value: withUnit(100 * value / total if total > 0 else None, "%", 2)

@@ -232,7 +232,7 @@ def _joints(run):
     yield table(heads, [("law", "", *laws), *shown], caption, "joints")
     if others:
         inside = table(heads, others, "Other properties of the joints", "joints")
-        yield folded("Properties that are zero, or have no effect here", inside, kind="screen")
+        yield folded("Properties that are zero, or have no effect here", inside, look="screen")
 
 
 def _lawOf(joint):
@@ -292,7 +292,7 @@ def loaded(record):
         " mm; help(masonry.Scene) describes the commands. Source: run.json: script."
     )
     title, few = "The commands of the script, in their order", len(script) <= MAX_COMMANDS
-    yield folded(title, listed(script, kind="script"), about, opened=few)
+    yield folded(title, listed(script, look="script"), about, opened=few)
     options = [
         f"{name.replace('_', ' ')}: {_said(value)} {run['option_units'].get(name, '')}".strip()
         for name, value in run["options"].items()
