@@ -114,8 +114,8 @@ def sideways(scene, towards, name):
 def _before(scene):
     """Gravity and accelerations when the present stage began [m/s²]."""
     running = scene.running
-    goesOn = running.resumedHere and running.isResumed
-    return goesOn and running.state.memory.get("begun") or list(scene.model.scheme.now)
+    isContinued = running.resumedHere and running.isResumed
+    return isContinued and running.state.memory.get("begun") or list(scene.model.scheme.now)
 
 
 Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
