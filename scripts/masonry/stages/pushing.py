@@ -48,8 +48,7 @@ class Pushing:
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
     places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
-    #: Whether the drive of a push before held the structure, which still moved, when this one began.
-    moving: bool = False
+    moving: bool = False  # whether the last push still moved the structure when this one began
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     #: Time [s] and base shear [kN] of the last rows, over which AVERAGED takes the mean.
@@ -140,9 +139,10 @@ def drivePush(scene, name, args, began, continued=False, held=False):
     which is measured then, so that no swing of that period is left. If not all blocks are driven,
     nothing is damped while it grows: numerical damping would act as more mass. Where the history
     turns, and where a push follows another one without rest, the velocity changes within whole
-    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
-    the displacement of curve.csv, so the wall turns within 0.01 mm of the turning points. Other
-    points are passed at full speed, and so is the end, unless it is that of a file.
+    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is
+    found both take :func:`rampTime`. The drive brakes by the displacement of curve.csv, so the wall
+    turns within 0.01 mm of the turning points. Other points are passed at full speed, and so is the
+    end, unless it is that of a file.
 
     Where the drive is slower, the time between rows is the same or less. Frames of a history are
     also at its turning points and zeros, unless the frame before is less than half of their spacing
