@@ -6,7 +6,6 @@ import collections
 import statistics
 
 from ..bricks import Bricks, summary
-from ..model.loading import Pattern
 from ..terminal import say
 
 MAX_SIZES = 4  # of blocks that are listed
@@ -110,7 +109,7 @@ def wallOf(description, loading):
     :param loading: :class:`masonry.model.loading.Loading`
     """
     target, bricks = loading.target, description.bricks
-    if isinstance(target, Pattern) or not target.box:
+    if not target.box:
         return None
     (left, front, bottom), (right, back, top) = description.low, description.high
     boxes = [[(min(c), max(c)) for c in zip(*block.corners)] for block in bricks]

@@ -14,8 +14,7 @@ from ..numbers import curves
 from ..numbers.quantities import IMBALANCE
 from ..run.option_table import USUAL
 from ..scene.history import aim, pathLength, turns
-from ..model.motion import REST
-from .rest import REST_ENERGY_RATIO, rampTime
+from .rest import REST, REST_ENERGY_RATIO, rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
@@ -57,7 +56,7 @@ class Pushing:
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
     reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
-    farthest: float = 0.0  # displacement of the present way [mm]
+    farthest: float = 0.0  # displacement since it turned [mm]
     drivenTo: float = 0.0  # what the drive had gone then [mm]
     turnedBack: bool = False  # whether the wall has not been farther for long
 
@@ -82,12 +81,12 @@ class Pushing:
         return mean
 
     def turnsBack(self, goal):
-        """Whether the drive has gone as far as the whole present way, and :data:`AVERAGED` at
+        """Whether the drive has gone as far as the whole present path, and :data:`AVERAGED` at
         least, since the wall was farthest on it, for the first time."""
         if goal.direction * (self.moved - self.farthest) > 0:
             self.farthest, self.drivenTo = self.moved, self.driven
-        way = max(AVERAGED, abs(goal.displacement - self.last))
-        back = self.driven - self.drivenTo > way and not self.turnedBack
+        length = max(AVERAGED, abs(goal.displacement - self.last))
+        back = self.driven - self.drivenTo > length and not self.turnedBack
         self.turnedBack = self.turnedBack or back
         return back
 
