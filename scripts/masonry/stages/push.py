@@ -158,8 +158,9 @@ def controlOf(value: Any, pushed: Any, control: Target | None) -> Any:
     :param value: what the user pushes, and ``control``, as in :func:`push`
     :param pushed: it as :func:`patternOf` gives it
     """
-    highest = isinstance(value, dict) and max(value, key=lambda t: t.recorded[2])
-    return control or highest or pushed
+    if control is None and isinstance(value, dict):
+        return max(value, key=lambda t: t.recorded[2])
+    return control or pushed
 
 
 def peaks(scene, rows):
