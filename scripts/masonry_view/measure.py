@@ -59,8 +59,8 @@ def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, 
     opening, normal = (np.array(curve[prefix + n]) for n in ("opening_mm", "normal_stress_MPa"))
     both = lambda *names: np.array([curve[prefix + n] for n in names if prefix + n in curve])
     slides = both("slide_mm", "slide_across_mm")
-    way = slides[:, -1] / (np.linalg.norm(slides[:, -1]) or 1.0)
-    slide, shear = way @ slides, way @ both("shear_stress_MPa", "shear_stress_across_MPa")
+    along = slides[:, -1] / (np.linalg.norm(slides[:, -1]) or 1.0)
+    slide, shear = along @ slides, along @ both("shear_stress_MPa", "shear_stress_across_MPa")
     area = lambda stress, mm: 1e3 * loops.area(np.maximum(stress, 0), mm)
     return {
         f"{prefix}opening_work_J_per_m2": area(normal, opening),

@@ -78,8 +78,8 @@ def test_shear_after_closure_stays_inside_the_cap(couplet):
 
 
 @mark.parametrize("axis", ["x", "y"])
-@mark.parametrize("way", [1, -1])
-def test_the_largest_shear_stress_is_that_of_the_vector_to_whichever_side(tmp_path, axis, way):
+@mark.parametrize("side", [1, -1])
+def test_the_largest_shear_stress_is_that_of_the_vector_to_whichever_side(tmp_path, axis, side):
     scene = lean(
         tmp_path, bricks.stack(2, UNIT), materials.calciumSilicate(), rate=2, gravity=0, plane=False
     )
@@ -88,7 +88,7 @@ def test_the_largest_shear_stress_is_that_of_the_vector_to_whichever_side(tmp_pa
     top = scene.platen("top", upTo=3 * UNIT[2], point=at, drive=f"z{axis}")
     bed = scene.joint(0, 1, name="j")
     scene.pressJoint(top, bed, -0.5e6)
-    scene.drive(top, **{axis: 0.1 * way})
+    scene.drive(top, **{axis: 0.1 * side})
     scene.finish()
     run = readRun(tmp_path)
     peak = 0.11 + 0.43 * 0.5
@@ -97,4 +97,4 @@ def test_the_largest_shear_stress_is_that_of_the_vector_to_whichever_side(tmp_pa
     assert answer == run["j_peak_shear_stress_MPa"]
     assert run["figure"]["x"]["column"] == f"j_slide{'_across' * (axis == 'y')}_mm"
     slide = readCurve(tmp_path)[run["figure"]["x"]["column"]][-1]
-    assert 0.02 < way * slide < 0.1
+    assert 0.02 < side * slide < 0.1

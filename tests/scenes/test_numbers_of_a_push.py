@@ -15,8 +15,8 @@ ELASTIC = materials.Masonry(
 
 
 def pushedWith(folder, before, after, *words, built=PIER, control=None, **base):
-    """The numbers of a push of a pier to a millimetre, in a run with other commands before and after its
-    first stage; ``base``: of the platen on which it stands."""
+    """The numbers of a push of a pier to a millimetre, in a run with other commands before and
+    after its first stage; ``base``: of the platen on which it stands."""
     scene = lean(folder, built, ELASTIC, *words, rate=20)
     scene.platen("bottom", **base)
     top = scene.handle(COUNT - 1, "top")

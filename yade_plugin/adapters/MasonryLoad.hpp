@@ -42,8 +42,9 @@ public:
                   .atLeast(0));
         visit("acceleration", &L::acceleration, number("m/s²", "Growth of the velocity in the ramp"));
         visit("reaction", &L::reaction,
-              number("N", "Force that the drive applied along the direction in the last step; whoever turns the direction "
-                          "turns it, too"));
+              number("N",
+                     "Force that the drive applied along the direction in the last step; whoever turns the direction "
+                     "turns it, too"));
         visit("work", &L::work,
               number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "
                           "energies of rigid bodies"),

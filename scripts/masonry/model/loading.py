@@ -330,6 +330,7 @@ class Pattern:
     name: str
     parts: tuple[tuple[int, Any, float], ...]
     damped: bool = False
+    box = brick = None  # it is no platen and no brick
 
     @property
     def recorded(self) -> Any:

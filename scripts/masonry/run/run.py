@@ -147,13 +147,13 @@ class Run:
         self.results.log(f"{note}\n{trace}\n")
         self.results.amend(notes=self.state.notes)
 
-    def note(self, kind, name, opposite="", control="", way=None):
-        """Note what the next stage loads, and the ``way`` of a push, as in
+    def note(self, kind, name, opposite="", control="", path=None):
+        """Note what the next stage loads, and the ``path`` of a push, as in
         :class:`masonry.run.run_state.RunState`."""
         load, number = [kind, name, opposite] + [control] * bool(control), str(self.entered + 1)
         self.state.loads = {**self.state.loads, number: load}
-        if way:
-            self.state.ways = {**self.state.ways, number: way}
+        if path:
+            self.state.paths = {**self.state.paths, number: path}
 
     @property
     def isResumed(self):

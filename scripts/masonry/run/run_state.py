@@ -42,7 +42,7 @@ class RunState:
     loads: dict = field(default_factory=dict)
     #: Of the pushes, by their numbers: whether displacements count on from the one before, and
     #: whether it follows a history.
-    ways: dict = field(default_factory=dict)
+    paths: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may
     #: consist of several.
     ended: dict = field(default_factory=dict)
@@ -82,9 +82,9 @@ class RunState:
     def _continues(self, number):
         """Whether a push goes on with the curve of the one before: both follow a history, or none
         of them."""
-        before = max((n for n in map(int, self.ways) if n < number), default=0)
-        continued, looped = self.ways.get(str(number), (False, False))
-        return bool(continued and before and looped == self.ways[str(before)][1])
+        before = max((n for n in map(int, self.paths) if n < number), default=0)
+        continued, looped = self.paths.get(str(number), (False, False))
+        return bool(continued and before and looped == self.paths[str(before)][1])
 
 
 @dataclass

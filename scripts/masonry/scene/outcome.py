@@ -11,7 +11,6 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..arguments import isNumber
 from ..model import bodies
-from ..model.loading import Pattern
 from ..numbers import columns
 from ..materials.assumptions import effective
 from ..terminal import say
@@ -342,6 +341,7 @@ def _entry(x, label, y, what, marks=(), looped=False, **more):
 
 def _ofPush(outcome):
     control, data = outcome.model.loading.control, outcome.data
+    mean = "mean " * (control.box is None and control.brick is None)  # of a pattern
     height = f"{control.recorded[2] - outcome.description.low[2]:.3g} m above the base"
     looped, marks = bool(outcome.pushed.history), []
     if data.rows:
@@ -350,7 +350,7 @@ def _ofPush(outcome):
         marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} mm"} for x, y in ends]
     return _entry(
         "displacement_mm",
-        f"{'mean ' * isinstance(control, Pattern)}displacement of {control.name}, {height} [mm]",
+        f"{mean}displacement of {control.name}, {height} [mm]",
         {"base_shear_kN": "supports", "top_shear_kN": "loaded point"},
         "force along the push [kN]",
         marks,

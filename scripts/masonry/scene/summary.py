@@ -119,7 +119,7 @@ def wallOf(description, loading):
     :param loading: :class:`masonry.model.loading.Loading`
     """
     target, bricks = loading.target, description.bricks
-    if isinstance(target, Pattern) or not target.box:
+    if not target.box:
         return None
     (left, front, bottom), (right, back, top) = description.low, description.high
     boxes = [[(min(c), max(c)) for c in zip(*block.corners)] for block in bricks]

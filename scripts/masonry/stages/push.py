@@ -158,8 +158,9 @@ def controlOf(value: Any, pushed: Any, control: Target | None) -> Any:
     :param value: what the user pushes, and ``control``, as in :func:`push`
     :param pushed: it as :func:`patternOf` gives it
     """
-    highest = isinstance(value, dict) and max(value, key=lambda t: t.recorded[2])
-    return control or highest or pushed
+    if control is None and isinstance(value, dict):
+        return max(value, key=lambda t: t.recorded[2])
+    return control or pushed
 
 
 def peaks(scene, rows):
@@ -243,7 +244,7 @@ def cycle(
     :param continued: and other parameters: as in :meth:`push`
     """
     aimed = _, counted = _aimed(scene, target, direction, control)
-    turns = isinstance(counted, Pattern) or not counted.box or "Y" not in counted.freedom
+    turns = not counted.box or "Y" not in counted.freedom
     height = counted.recorded[2] if turns else counted.box[0][2]
     height -= scene.description.low[2]
     millimetres = 10 * height if unit == "%" else 1  # per unit
@@ -314,7 +315,7 @@ def _drive(scene, name, aimed, direction, rate, continued, **aim):
         )
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
-    running.note("push", *names, counted, way=[continued, bool(args.history)])
+    running.note("push", *names, counted, path=[continued, bool(args.history)])
     if not scene.limitAnalysisOnly:
         drivePush(scene, name, args, began, continued, held)
         loading.stopDrives()

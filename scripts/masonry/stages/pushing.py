@@ -14,8 +14,7 @@ from ..numbers import curves
 from ..numbers.quantities import IMBALANCE
 from ..run.option_table import USUAL
 from ..scene.history import aim, pathLength, turns
-from ..model.motion import REST
-from .rest import REST_ENERGY_RATIO, rampTime
+from .rest import REST, REST_ENERGY_RATIO, rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
@@ -48,8 +47,7 @@ class Pushing:
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
     places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
-    #: Whether the drive of a push before held the structure, which still moved, when this one began.
-    moving: bool = False
+    moving: bool = False  # whether the last push still moved the structure when this one began
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     #: Time [s] and base shear [kN] of the last rows, over which AVERAGED takes the mean.
@@ -58,7 +56,7 @@ class Pushing:
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
     reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
-    farthest: float = 0.0  # displacement of the present way [mm]
+    farthest: float = 0.0  # displacement since it turned [mm]
     drivenTo: float = 0.0  # what the drive had gone then [mm]
     turnedBack: bool = False  # whether the wall has not been farther for long
 
@@ -83,12 +81,12 @@ class Pushing:
         return mean
 
     def turnsBack(self, goal):
-        """Whether the drive has gone as far as the whole present way, and :data:`AVERAGED` at
+        """Whether the drive has gone as far as the whole present path, and :data:`AVERAGED` at
         least, since the wall was farthest on it, for the first time."""
         if goal.direction * (self.moved - self.farthest) > 0:
             self.farthest, self.drivenTo = self.moved, self.driven
-        way = max(AVERAGED, abs(goal.displacement - self.last))
-        back = self.driven - self.drivenTo > way and not self.turnedBack
+        length = max(AVERAGED, abs(goal.displacement - self.last))
+        back = self.driven - self.drivenTo > length and not self.turnedBack
         self.turnedBack = self.turnedBack or back
         return back
 
@@ -140,9 +138,10 @@ def drivePush(scene, name, args, began, continued=False, held=False):
     which is measured then, so that no swing of that period is left. If not all blocks are driven,
     nothing is damped while it grows: numerical damping would act as more mass. Where the history
     turns, and where a push follows another one without rest, the velocity changes within whole
-    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
-    the displacement of curve.csv, so the wall turns within 0.01 mm of the turning points. Other
-    points are passed at full speed, and so is the end, unless it is that of a file.
+    periods, :func:`rampTime` at least, because open joints make periods longer. Where no period is
+    found both take :func:`rampTime`. The drive brakes by the displacement of curve.csv, so the wall
+    turns within 0.01 mm of the turning points. Other points are passed at full speed, and so is the
+    end, unless it is that of a file.
 
     Where the drive is slower, the time between rows is the same or less. Frames of a history are
     also at its turning points and zeros, unless the frame before is less than half of their spacing
