@@ -90,7 +90,7 @@ private:
     std::vector<Limit> limits_;        // of the store's kinds
     long revision_ = -1;               // SceneContents::revision() for which they were read
     int points_ = 0;                   // JointLoop::points for which they were read
-    Vector3r size_ = Vector3r::Zero(); // of a box around the blocks' centres [m]
+    Vector3r size_ = Vector3r::Zero(); // of a box around all joints [m]
 };
 
 } // namespace masonry
