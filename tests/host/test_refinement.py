@@ -357,3 +357,53 @@ def test_without_a_word_joints_get_eight_points_and_five_a_side_in_space():
         joint = couplet(0, inPlane=inPlane, cap=False)
         ramp(-0.95 * 0.1e6 * AREA)
         assert len(joint.geom.areas) == count
+
+
+# -- dry joints that open --------------------------------------------------------------------------
+
+
+def leaning(stiffness, lever=(0.04, 0.0), load=2.5e3, law="softening", inPlane=True, most=0):
+    """The points of the joints of a column of five dry blocks of 0.2 × 0.2 × 0.1 m, which an
+    eccentric load presses; then of the same after it has been saved and loaded."""
+    O.reset()
+    unit = unitMaterial(young=1e6 * stiffness, poisson=0.2)
+    top = pile(6, size=(0.2, 0.2, 0.1), material=unit, inPlane=inPlane)[-1]
+    head = MasonryLoad(body=top, point=(0.1 + lever[0], 0.1 + lever[1], 0.6), damped=True)
+    dry = dict(tensileStrength=0, cohesion=0, friction=2, residualFriction=2, cap=False, law=law)
+    dry.update(normalStiffness=stiffness, shearStiffness=stiffness)
+    around = dict(gravity=(0, 0, 0), damping=0.7, inPlane=inPlane, subcontacts=3)
+    joints = join(MasonryJoint(**dry), loads=[head], **around)
+    loop().points = most
+    head.force = Vector3(0, 0, -load)
+    run(3000)
+    return joints
+
+
+@LAWS
+def test_dry_joints_get_points_where_a_compliant_bed_opens(law):
+    for stiffness, count in ((1e9, 14), (1e12, 3)):
+        joints = leaning(stiffness, law=law)
+        assert {len(j.geom.areas) for j in joints} == {count}
+        assert min(max(s[0] for s in j.phys.stress) for j in joints) >= -1e-3  # they are open
+    assert {len(j.geom.areas) for j in leaning(1e9, (0.01, 0.0), law=law)} == {3}  # closed
+    assert {len(j.geom.areas) for j in leaning(1e9, law=law, most=3)} == {3}
+
+
+@mark.parametrize(
+    "lever, counts", [((0.04, 0), (14, 3)), ((0, 0.04), (3, 14)), ((0.03, 0.03), (8, 8))]
+)
+def test_in_space_they_get_them_along_the_sides_that_open(lever, counts, tmp_path):
+    path = str(tmp_path / "c")
+    joints = leaning(1e9, lever, inPlane=False)
+    sides = lambda j: tuple(len({round(c[d], 6) for c in j.geom.centres}) for d in (0, 1))
+    assert {sides(j) for j in joints} == {counts}
+    saveCheckpoint(path)
+    there = bits(joints)
+    run(20)
+    after = bits(joints)
+    joints = leaning(1e9, lever, inPlane=False, load=1.0)
+    assert {len(j.geom.areas) for j in joints} == {9}
+    loadCheckpoint(path)
+    assert bits(joints) == there
+    run(20)
+    assert bits(joints) == after

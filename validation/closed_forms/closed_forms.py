@@ -13,7 +13,7 @@ import traceback
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
-import arch_cases, elastic_cases, motion_cases  # noqa: E401, E402, F401
+import arch_cases, column_cases, elastic_cases, motion_cases  # noqa: E401, E402, F401
 import part_cases, shear_cases, wall_cases  # noqa: E401, E402, F401
 from cases import CASES  # noqa: E402
 from studies import head, line  # noqa: E402

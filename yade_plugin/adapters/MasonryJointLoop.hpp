@@ -36,19 +36,21 @@ class MasonryJointLoop : public EngineAdapter<MasonryJointLoop>, public JointLoo
                         "real time alone")
                   .source("yade_plugin/README.md, Impacts"));
         visit("impactWork", &L::impactWork, number("J", "Energy taken by impacts so far"), ReadOnly);
-        visit(
-            "points", &L::points,
-            number("-",
-                   "Points along a joint between rigid blocks from when it is about to yield; in space along each "
-                   "side of its face. 0: 8, and 5 in space; 3: joints keep the three that they are made with. Every "
-                   "tenth step looks for joints that bear 0.9 of the elastic limit of the cap, and, of joints with a "
-                   "bond that stand in space or cannot crush, 0.9 of the strength of the bond, and takes those at 0.75 "
-                   "along. The points of Gauss and Lobatto take over the state. A dry joint that cannot crush, a joint "
-                   "that was made with as many points or with fewer than three along a side, and joints of deformable "
-                   "units keep theirs")
-                .atLeast(0)
-                .atMost(Refinement::most)
-                .source("yade_plugin/README.md, Points where a joint yields"));
+        visit("points", &L::points,
+              number(
+                  "-",
+                  "Points along a joint between rigid blocks from when it is about to yield or, dry and compliant, "
+                  "to open; in space along each side of its face that yields or opens. 0: 8, 5 in space, and 14 "
+                  "where it opens; 3: joints keep the three that they are made with. Every "
+                  "tenth step looks for joints that bear 0.9 of the elastic limit of the cap, and, of joints with a "
+                  "bond that stand in space or cannot crush, 0.9 of the strength of the bond, and takes those at 0.75 "
+                  "along. The points of Gauss and Lobatto take over the state. A dry joint that cannot crush and has a "
+                  "stiff bed, a joint that was made with as many points or with fewer than three along a side, and "
+                  "joints of deformable "
+                  "units keep theirs")
+                  .atLeast(0)
+                  .atMost(Refinement::most)
+                  .source("yade_plugin/README.md, Points where a joint yields"));
         visit("refiningEnergy", &L::refiningEnergy,
               number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
                           "the difference between few and many points of those that were cracked"),

@@ -310,23 +310,22 @@ PointCounts Refinement::countsIfOpening(const JointKind& kind, const Limit& limi
     }
     if (!(force < 0) || highest * area < (1 - part) * force) return {};
     middle /= area;
-    const Vector3r lever = pressed / force - middle; // of the force
-    double along = 0, across = 0, mixed = 0;         // second moments of the area [m⁴]
-    for (int p = 0; p < shapes.points; ++p) {
-        const Vector3r arm = shapes.offsetAt(p, j) - middle;
-        along += shapes.areaAt(p, j) * arm[1] * arm[1];
-        across += shapes.areaAt(p, j) * arm[2] * arm[2];
-        mixed += shapes.areaAt(p, j) * arm[1] * arm[2];
-    }
-    const double u = lever[1], v = lever[2];
-    const double squaredLength = 12 * (along * u * u + 2 * mixed * u * v + across * v * v) / (area * (u * u + v * v));
+    Vector3r lever = pressed / force - middle; // of the force
+    lever[0] = 0;
     const auto& r = shapes.joints[j];
     const double height = size_.dot(r.normal.cwiseAbs());
-    if (!(-force / area * height * height >= leastLean * k * r.span()[0] * squaredLength)) return {};
+    const double width = size_.dot((r.axes() * lever).cwiseAbs()) / lever.norm();
+    if (!(-force / area * height * height >= leastLean * k * r.span()[0] * width * width)) return {};
     auto counts = limit.opened();
-    const double first = u * u * across, second = v * v * along; // squares of what opens it along and across
-    if (!limit.row() && second > first) std::swap(counts.along, counts.across);
-    if (!limit.row() && std::min(first, second) > both * both * std::max(first, second))
+    if (limit.row()) return counts;
+    double along = 0, across = 0; // squares of what opens the joint along and across it
+    for (int p = 0; p < shapes.points; ++p) {
+        const Vector3r arm = shapes.offsetAt(p, j) - middle;
+        along += shapes.areaAt(p, j) * arm[2] * arm[2] * lever[1] * lever[1];
+        across += shapes.areaAt(p, j) * arm[1] * arm[1] * lever[2] * lever[2];
+    }
+    if (across > along) std::swap(counts.along, counts.across);
+    if (std::min(along, across) > both * both * std::max(along, across))
         counts.along = counts.across = std::min(pointsOfBoth, std::max(counts.along, counts.across));
     return counts;
 }
@@ -369,9 +368,9 @@ void Refinement::readLimits(const SceneContents& store) {
     limits_.clear();
     Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
     for (const auto& joint : store.joints)
-        for (const auto& side : joint.geom->reference().sides) {
-            low = low.cwiseMin(side.position);
-            high = high.cwiseMax(side.position);
+        for (const auto& corner : joint.geom->reference().polygon()) {
+            low = low.cwiseMin(corner);
+            high = high.cwiseMax(corner);
         }
     size_ = high - low;
     for (const auto& kind : store.kinds)

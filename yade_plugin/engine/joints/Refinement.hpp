@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // More points for joints between rigid blocks that are about to yield or, dry and compliant, to open. While a joint is
 // elastic and closed, few points along it say exactly what it does; how far crushing, a crack or the pressed part of an
-// open joint reaches, only many do. yade_plugin/README.md, Points where a joint yields or opens, says when, and what
+// open joint reaches, only many do. yade_plugin/README.md, Points where a joint yields, says when, and what
 // the new points take over.
 #pragma once
 #include "SceneContents.hpp"
@@ -25,8 +25,8 @@ public:
     static constexpr int pointsOfBoth = 8; // along both sides of a joint that opens along both
     static constexpr double both = 0.25;   // share of one side in the other from which on it opens along both
     static constexpr int pointsOfFan = 6;  // of a face in space that has not four corners
-    // Least lean of a compliant structure: the displacement of its top over the length of a joint, if all its joints
-    // turned as one whose end is about to open.
+    // Least lean of a compliant structure: the displacement of its top over its width, if its beds turned as they do
+    // where one end of its section is about to open.
     static constexpr double leastLean = 1e-3;
     static constexpr int fewest = 3; // points along a side that have the true rotational stiffness
     static constexpr int most = 100; // points along a side
@@ -90,7 +90,7 @@ private:
     std::vector<Limit> limits_;        // of the store's kinds
     long revision_ = -1;               // SceneContents::revision() for which they were read
     int points_ = 0;                   // JointLoop::points for which they were read
-    Vector3r size_ = Vector3r::Zero(); // of a box around the blocks' centres [m]
+    Vector3r size_ = Vector3r::Zero(); // of a box around all joints [m]
 };
 
 } // namespace masonry
