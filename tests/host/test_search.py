@@ -120,7 +120,7 @@ def test_a_trial_without_checks_at_rest_in_a_row_is_given_up_in_its_time(scaling
 
 
 @mark.parametrize(
-    "kinetic, waits, rests",
+    "kinetic, halves, rests",
     [
         # the energy at a time [s], how often half of TRIAL is waited for, and whether it rests then
         (lambda t: 1.0, 2, False),
@@ -131,7 +131,7 @@ def test_a_trial_without_checks_at_rest_in_a_row_is_given_up_in_its_time(scaling
         (lambda t: 0.9 * REST_ENERGY_RATIO * t / growing.TRIAL, 2, False),
     ],
 )
-def test_a_wait_ends_when_motion_does_not_die_away(kinetic, waits, rests):
+def test_a_wait_ends_when_motion_does_not_die_away(kinetic, halves, rests):
     O.dt, wait, atRest = 1e-4, Waiting(), False
     while not atRest:
         wait.done += EVERY
@@ -139,7 +139,7 @@ def test_a_wait_ends_when_motion_does_not_die_away(kinetic, waits, rests):
         if wait.isGivenUp(growing.TRIAL):
             break
     assert atRest == rests
-    assert wait.halves == waits - rests
+    assert wait.halves == halves - rests
 
 
 def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten():

@@ -49,7 +49,8 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
         ("d;F\n0,0;0,0\n0,5;10,2\n1,0;15,3\n", [0, 0.5, 1], [0, 10.2, 15.3]),
         ("d,F\n0,0\n1,5\nNaN,NaN\n-1,-5\n", [0, 1, -1], [0, 5, -5]),
         (
-            "Test unit,WS1\nReference,Somebody (2009)\nd,F\n[mm],[kN]\n0,0\n1.2,25\nNaN,NaN\n-1.1,2\n",
+            "Test unit,WS1\nReference,Somebody (2009)\nd,F\n[mm],[kN]\n"
+            "0,0\n1.2,25\nNaN,NaN\n-1.1,2\n",
             [0, 1.2, -1.1],
             [0, 25, 2],
         ),

@@ -19,8 +19,9 @@ def rotation(lever):
 
 
 def largestLoad(lever):
-    """The largest load over kn·A·t [-] of a column with a fixed foot, at this lever over the side at
-    its head. From a lever at the foot on, each joint turns the blocks above it towards the load."""
+    """The largest load over kn·A·t [-] of a column with a fixed foot, at this lever over the side
+    at its head. From a lever at the foot on, each joint turns the blocks above it towards the load.
+    """
 
     def reaches(load):
         at, slope = np.linspace(lever, 0.4999, 4000), 0.0

@@ -351,7 +351,7 @@ def _tag(element):
 
 
 def _userUnit(root):
-    """Metres in one unit of the numbers of an SVG file, if its size is told in mm and its kind."""
+    """Metres in one unit of the numbers of an SVG file, if it says its size in mm or the like."""
     box = re.split(r"[\s,]+", root.get("viewBox", "").strip())
     width = re.fullmatch(r"\s*([\d.]+)\s*([a-z]+)\s*", root.get("width", ""))
     try:

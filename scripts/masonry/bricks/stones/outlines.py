@@ -134,8 +134,8 @@ def fromOutlines(
         ring = withoutStraight(places[rings[n]]) if n in rings else []
         if len(ring) < 3 or crossing(ring) is not None:
             problems.append(
-                f"{stone.name} near {_at(back(stone.ring))}: nothing is left of it, or it crosses itself,"
-                f" at a tolerance of {fine:g} m"
+                f"{stone.name} near {_at(back(stone.ring))}: nothing is left of it, or it crosses"
+                f" itself, at a tolerance of {fine:g} m"
             )
             continue
         for face in convexParts(ring):

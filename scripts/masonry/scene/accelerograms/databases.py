@@ -227,7 +227,10 @@ def _together(file, series, steps, units):
 
 def csmip(file: TextFile, at: int):
     series, steps, units = [], set(), set()
-    pattern = rf"\s*(\d+)\s+points of accel data equally spaced at\s*{_NUMBER}\s*sec,\s*in\s+(.*?)\.?\s*\(\d+[FE](\d+)"
+    pattern = (
+        rf"\s*(\d+)\s+points of accel data equally spaced at\s*{_NUMBER}\s*sec,"
+        r"\s*in\s+(.*?)\.?\s*\(\d+[FE](\d+)"
+    )
     for line, text in enumerate(file.lines, 1):
         if not (found := re.match(pattern, text, re.I)):
             continue
