@@ -40,6 +40,8 @@ from masonry.errors import Refused
 from .statistics import CONFIDENCE, Interval
 
 MIN_RECORDS = 3  # records
+#: Standard deviations above the median where 0.9999 reach the limit.
+NEARLY_ALL = 3.72
 MAX_DISPERSION = 10.0  # beyond which the data do not bound it [-]
 RAYS = 360  # along which the edge of the likely values is found
 MIN_SLOPE_RATIO = 1e-6  # of the value of a = 1/β at the maximum: smaller is 0
@@ -119,7 +121,8 @@ def fit(low: Numbers, high: Numbers) -> Fit:
 def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: float) -> str:
     """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine
     manual, "Fragility Models". Its mean and standard deviation are those of the intensity, not of
-    its logarithm.
+    its logarithm. OpenQuake takes intensities above maxIML down to it, so maxIML is where nearly
+    all reach the limit, and the description says which levels were run.
 
     :param fits: by the taxonomy of the assets
     :param measure: of intensity, as a column of study.csv
@@ -135,7 +138,7 @@ def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: flo
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<nrml xmlns="http://openquake.org/xmlns/nrml/0.5">',
         '<fragilityModel id="fragility" assetCategory="buildings" lossCategory="structural">',
-        f"<description>{html.escape(what)}</description>",
+        f"<description>{html.escape(what)}; run up to {highest:g} g</description>",
         f"<limitStates>{state}</limitStates>",
     ]
     ids = [re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:100] for name in fits]
@@ -145,9 +148,10 @@ def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: flo
         spread = fit.dispersion.value
         mean = fit.median.value * math.exp(spread**2 / 2)
         deviation = mean * math.sqrt(math.expm1(spread**2))
+        most = max(highest, fit.median.value * math.exp(NEARLY_ALL * spread))
         lines += [
             f'<fragilityFunction id="{name}" format="continuous" shape="logncdf">',
-            f'<imls imt="{imt}" minIML="0" maxIML="{highest:g}"/>',
+            f'<imls imt="{imt}" minIML="0" maxIML="{most:.6g}"/>',
             f'<params ls="{state}" mean="{mean:.6g}" stddev="{deviation:.6g}"/>',
             "</fragilityFunction>",
         ]

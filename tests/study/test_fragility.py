@@ -157,8 +157,10 @@ def test_a_model_for_openquake_has_names_and_measures_that_it_reads():
     text = nrml({"house <1>": found}, "Sa_0.5s_g", "limit", "x < 1 & more", 2.0)
     root = ElementTree.fromstring(text.encode())
     space = "{http://openquake.org/xmlns/nrml/0.5}"
-    assert root.find(f".//{space}description").text == "x < 1 & more"
+    assert root.find(f".//{space}description").text == "x < 1 & more; run up to 2 g"
     function = root.find(f".//{space}fragilityFunction")
     assert function.get("id") == "house_1_" and function[0].get("imt") == "SA(0.5)"
+    # OpenQuake puts what is above maxIML down to it
+    assert found.probability(float(function[0].get("maxIML"))).value == approx(0.9999, abs=1e-5)
     with raises(Refused, match="OpenQuake has no Sa_0.5s_2%_g"):
         nrml({}, "Sa_0.5s_2%_g", "limit", "", 2.0)
