@@ -240,6 +240,7 @@ def pressJoint(
     """
     if "z" not in target.drives:
         raise Refused(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
+    scene.model.loading.forceOf(target)  # checkpoints of the drive have its engine, too
     distance = stress / joint.normalStiffness
     _driveBy(scene, target, "z", lambda: distance)
     if stress:
