@@ -13,14 +13,17 @@ transformations of blocks. The barrel vault of compas_dem takes 2 s.
 
 import json
 import math
+import os
 from dataclasses import replace
 
 import numpy as np
 from masonry import AT_REST, Scene, bricks, materials
 from masonry.bricks.compas_files import contentOf, kindOf
 from masonry.errors import Refused
+from masonry.arguments import isNumber, shown
 from masonry.scene.options import parser
 from masonry.texts import MISREAD
+from masonry.units import GRAVITY
 from yade import O
 
 STIFFNESS = 1e12  # [Pa/m] of joints of rigid blocks, if the problem has no k_n
@@ -29,10 +32,14 @@ WAITS = 20  # times that rest is waited for
 NOTHING = 1e-9  # force of a contact over the largest one, below which it is none
 
 
-def point(value):
-    """Three numbers of a point or vector of COMPAS."""
-    x, y, z = map(float, contentOf(value))
-    return np.array([x, y, z])
+def point(value, what):
+    """Three numbers of a point or vector of COMPAS. Raises Refused."""
+    row = contentOf(value)
+    if not isinstance(row, list) or len(row) != 3 or not all(map(isNumber, row)):
+        raise Refused(f"{what} {shown(row)} must be three numbers")
+    if not all(map(math.isfinite, row)):
+        raise Refused(f"{what} {shown(row)} must be finite")
+    return np.array(row, float)
 
 
 class Problem:
@@ -62,7 +69,7 @@ class Problem:
             self.problems.append("no block is held")
         refuse(path, self.problems)
 
-    def materialsOf(self, contact_model=None, joint_model=None, name=None):
+    def materialsOf(self, contact_model=None, joint_model=None, **others):
         """Joints of the contact model, and a unit for each density."""
         if joint_model:
             self.problems.append(
@@ -101,7 +108,7 @@ class Problem:
     def takeConditions(
         self,
         gravity=False,
-        g=9.81,
+        g=GRAVITY,
         body_forces=(),
         point_loads=(),
         surface_loads=(),
@@ -110,26 +117,29 @@ class Problem:
         **others,
     ):
         """Loads and supports of the boundary conditions."""
-        self.problems += [f"{key} is not known here" for key, value in others.items() if value]
+        self.problems += [f"{key} is not known here" for key in others]
         if not gravity:
             print("note: gravity is False; the weight acts, as in the solvers of compas_dem")
-        self.body = sum(map(point, body_forces), np.zeros(3))  # [m/s²]
+        bodies = [point(one, "body_forces") for one in body_forces]
+        self.body = sum(bodies, np.zeros(3))  # [m/s²]
         self.gravity = g - self.body[2]
         if self.gravity < 0:
             self.problems.append(f"body_forces lift the blocks by {-self.gravity:g} m/s²")
         for load in point_loads:
             n = self.blockOf(load, "point_loads")
-            if load.get("moment") is not None and point(load["moment"]).any():
+            if load.get("moment") and any(load["moment"]):
                 self.problems.append(f"point_loads: moment on block {n}: say force and point")
             if load.get("loading_type", "ramp") != "ramp":
                 self.problems.append(f"point_loads: loading_type {load['loading_type']} is no ramp")
             at = load.get("point")
-            self.loads.append((n, point(load["force"]), None if at is None else point(at)))
+            at = None if at is None else point(at, "point_loads: point [m]")
+            self.loads.append((n, point(load["force"], "point_loads: force [N]"), at))
         for load in surface_loads:
-            corners = np.array([*map(point, contentOf(load["polygon"])["points"])])
-            areas, middle = areasOf(corners)
+            corners = contentOf(load["polygon"])["points"]
+            areas, middle = areasOf(np.array([point(one, "polygon") for one in corners]))
             size = np.linalg.norm(areas)
-            towards = areas / size if load.get("direction") is None else point(load["direction"])
+            towards = load.get("direction")
+            towards = areas / size if towards is None else point(towards, "direction")
             force = load["magnitude"] * size * towards
             self.loads.append((self.blockOf(load, "surface_loads"), force, middle))
         self.takeDisplacements(displacements)
@@ -190,7 +200,7 @@ def run(problem, args):
     held = {n: scene.hold(n, name=f"held_{n}", axes=axes) for n, axes in problem.held.items()}
     rest(scene)
     if sideways := math.hypot(*problem.body[:2]):
-        scene.lean(sideways / 9.81, towards=(*problem.body[:2], 0))
+        scene.lean(sideways / GRAVITY, towards=(*problem.body[:2], 0))
         rest(scene)
     if problem.moved:
         by = {held[n].recorded: 1e3 * path for n, path in problem.moved.items()}
@@ -252,7 +262,8 @@ def contactOf(problem, joint, turns):
     one, other = turns[joint.id1], turns[joint.id2]
     moved = lambda points, by: points @ by[0].T + by[1]
     midway = lambda points: (moved(points, one) + moved(points, other)) / 2
-    out, along = ((one[0] + other[0]) @ np.array([*v]) / 2 for v in axesOf(joint.geom))
+    turn = (one[0] + other[0]) / 2
+    out, along = (turn @ np.array([*v]) for v in (joint.geom.normal, joint.geom.tangent))
     axes = np.array([out, along, np.cross(out, along)])
     forces = rows(joint.phys.stress) * np.array(joint.geom.areas)[:, None] @ axes  # on the first
     u, v = (problem.file.stones[n].node for n in (joint.id1, joint.id2))
@@ -268,13 +279,8 @@ def contactOf(problem, joint, turns):
     first -= first @ normal * normal
     first /= np.linalg.norm(first)
     second = np.cross(normal, first)
-    return *sorted(map(str, (u, v)), key=int), edgeOf(
-        problem, corners, forces, gaps, (first, second, normal)
-    )
-
-
-def axesOf(geom):
-    return geom.normal, geom.tangent
+    edge = edgeOf(problem, corners, forces, gaps, (first, second, normal))
+    return str(min(u, v)), str(max(u, v)), edge
 
 
 def sharesOf(points, corners):
@@ -298,9 +304,8 @@ def sharesOf(points, corners):
 
 
 def edgeOf(problem, corners, forces, gaps, axes):
-    """Attributes of an edge as LMGC90 leaves them in compas_dem; axes: both tangents and the
-    normal. ``force_tangent2`` is along xaxis x yaxis of ``contact_frames``, and ``c_v`` against
-    it."""
+    """Attributes of an edge as LMGC90 leaves them in compas_dem, where ``force_tangent2`` and
+    ``c_v`` have other signs; ``axes``: both tangents and the normal."""
     first, second, normal = axes
     along, across, pressed = (forces @ axis for axis in axes)
     shear = np.hypot(along, across)
@@ -342,18 +347,25 @@ def edgeOf(problem, corners, forces, gaps, axes):
     )
 
 
-if __name__ == "__main__":
+def main(words=None):
+    """Runs the problem that the words of a command line name; None: those of this program."""
     options = parser(__doc__, until=None)
     options.add_argument("problem", help="file of a Problem of compas_dem")
     options.add_argument("results", help="file that is written")
-    args = options.parse_args()
+    args = options.parse_args(words)
     try:
         problem = Problem(args.problem)
     except MISREAD as error:
         options.error(str(error) or type(error).__name__)
+    if not os.path.isdir(os.path.dirname(os.path.abspath(args.results))):
+        options.error(f"{args.results}: there is no such folder")
     scene = run(problem, args)
-    if scene.collapsed:
-        print(f"note: the structure falls: {args.results} has no results of a state at rest")
-    else:
+    if scene.ended == AT_REST:
         writeResults(args.results, problem)
+    else:
+        print(f"note: the structure is not at rest, so {args.results} is not written")
     scene.finish()
+
+
+if __name__ == "__main__":
+    main()
