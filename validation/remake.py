@@ -219,6 +219,14 @@ def ofStudies():
             10,
         ),
         Result(
+            "barrel_vault",
+            ((PYTHON, "validation/barrel_vault/barrel_vault.py"),),
+            (),
+            (*own("barrel_vault"), "scripts/compas.py", *RIGID),
+            1,
+            limits=True,
+        ),
+        Result(
             "held_loads",
             (inYade("held_loads/held_loads.py"),),
             (),

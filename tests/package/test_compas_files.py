@@ -132,7 +132,7 @@ PROBLEM = typed(
 )
 
 
-def test_what_a_problem_says_beside_stones_is_kept_and_told(tmp_path, capsys):
+def test_what_a_problem_says_beside_stones_is_kept_with_a_note(tmp_path, capsys):
     path = write(tmp_path / "a.json", PROBLEM)
     found = readCompas(path)
     below, above = found.stones
@@ -140,8 +140,8 @@ def test_what_a_problem_says_beside_stones_is_kept_and_told(tmp_path, capsys):
     assert (above.isSupport, above.node, above.material) == (False, 0, STONE)
     assert found.contact["contact_model"] == LAW and found.conditions["gravity"] is True
     assert {b.part for b in fromFile(path)} == {"stone"}
-    told = "supports (1), density 2100 kg/m³, MohrCoulomb, point_loads: bricks.readCompas"
-    assert told in capsys.readouterr().out
+    note = "supports (1), density 2100 kg/m³, MohrCoulomb, point_loads: bricks.readCompas"
+    assert note in capsys.readouterr().out
     fromFile(write(path, mesh()))
     assert not capsys.readouterr().out
 

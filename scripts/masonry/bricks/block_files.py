@@ -68,9 +68,10 @@ def fromFile(
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid``
     is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS, of which :func:`readCompas` also
-    gives supports, densities, contact properties and loads. Solids in one group may touch. Parts have the names of groups, or of the file; groups of one solid each whose names differ
-    in a number at their end alone are one part. Faces run counter-clockwise seen from outside, or
-    all of them clockwise. Where rounded numbers bend a face, it is made plane, with a note.
+    gives supports, densities, contact properties and loads. Solids in one group may touch. Parts
+    have the names of groups, or of the file; groups of one solid each whose names differ in a
+    number at their end alone are one part. Faces run counter-clockwise seen from outside, or all of
+    them clockwise. Where rounded numbers bend a face, it is made plane, with a note.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks

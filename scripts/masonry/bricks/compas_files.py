@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Stones in JSON files of COMPAS: a model of compas_model or compas_dem, a problem of compas_dem, an
-assembly of compas_assembly, or meshes, boxes and polyhedra."""
+"""Stones in JSON files of COMPAS: models of compas_model and compas_dem, problems of compas_dem,
+assemblies of compas_assembly, meshes, boxes and polyhedra."""
 
 import json
 import math
@@ -182,7 +182,7 @@ def _byGuid(values):
 
 
 def _ofAssembly(graph):
-    """The stones of an assembly: the blocks at the nodes of its graph. Its edges hold interfaces."""
+    """The stones of an assembly: blocks at nodes of its graph, whose edges hold interfaces."""
     for number, node in graph["node"].items():
         if node.get("block"):
             stone = _solid(node["block"], "")
