@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A barrel vault beside compas_dem: builds the vault, writes it as a problem of compas_dem, runs
 scripts/compas.py on it, as built and with supports half a millimetre farther apart, and compares
-the results. It takes some 20 s.
+the results. It takes 20 s.
 
 /usr/bin/python3 validation/barrel_vault/barrel_vault.py
 """
@@ -163,7 +163,7 @@ def main():
     heads += [f"height of the thrust, joint {n} [mm]" for n in range(1, 1 + COURSES // 2)]
     print("| | compas_dem | as built | supports 0.5 mm apart |\n|---|---|---|---|")
     for head, *row in zip(heads, PUBLISHED, built, parted):
-        print(f"| {head} | " + " | ".join(f"{value:.5g}" for value in row) + " |")
+        print(f"| {head} | " + " | ".join(f"{value:.3f}" for value in row) + " |")
     print(f"\nLeast thrust of rigid blocks: {leastThrust(blocks):.1f} kN")
     away = np.abs(np.subtract(parted, PUBLISHED))
     return int((away > [SHARE * f for f in PUBLISHED[:3]] + [NEAR] * (COURSES // 2)).any())

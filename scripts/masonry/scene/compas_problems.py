@@ -122,7 +122,7 @@ def _takeConditions(
         towards = areas / size if towards is None else _numbers(towards, "direction")
         force = load["magnitude"] * size * towards
         problem.loads.append((problem.blockAt(load, "surface_loads"), tuple(force), tuple(middle)))
-    asked: dict[int, list] = {}  # later numbers replace earlier ones, as in compas_dem
+    asked = {}  # later numbers replace earlier ones, as in compas_dem
     for one in displacements:
         own = asked.setdefault(problem.blockAt(one, "displacements"), 6 * [None])
         row = [*(one.get("translation") or 3 * [None]), *(one.get("rotation") or 3 * [None])]
