@@ -214,7 +214,7 @@ def ofStudies():
             "barrel_vault",
             (program("barrel_vault/barrel_vault.py"),),
             (),
-            (*own("barrel_vault"), "scripts/compas.py", *RIGID),
+            (*own("barrel_vault"), "scripts/masonry/scene/compas_*.py", *RIGID),
             1,
             limits=True,
         ),

@@ -6,6 +6,7 @@ from hosted import *
 import compas
 from barrel_vault import *
 from masonry.bricks import stack
+from masonry.scene.compas_problems import readProblem
 
 WEIGHT = DENSITY * GRAVITY * 0.5 * 0.4 * 0.3  # of a block [N]
 STACK = stack(2, (0.5, 0.4, 0.3)).moved(-0.25, -0.2)
@@ -157,6 +158,18 @@ REFUSED = {
         asking(displacements=[dict(block_index=0, translation=None, rotation=[0, 0.1, 0])]),
         "rotation of block 0",
     ),
+    "far": (
+        asking(displacements=[dict(block_index=0, translation=[math.nan, 0, 0], rotation=None)]),
+        "displacements: nan must be None or a number",
+    ),
+    "no area": (
+        asking(
+            surface_loads=[
+                dict(block_index=1, polygon=typed("x/Polygon", points=TOP[:2]), magnitude=1)
+            ]
+        ),
+        "polygon without an area",
+    ),
     "others": (asking(temperatures=[20]), "temperatures is not known"),
     "words": (asking(point_loads=[{**PUSH, "force": ["a", 0, 0]}]), "force [N] ['a', 0, 0] must"),
     "infinite": (asking(body_forces=[[0, 0, math.inf]]), "body_forces [0, 0, inf] must be finite"),
@@ -178,6 +191,31 @@ def test_what_cannot_be_said_is_refused_before_the_run(solve, name, capsys):
         solve(asked)
     assert ended.value.code == 2 and said in capsys.readouterr().err
     assert not os.path.exists("results") and not os.path.exists("results.json")
+
+
+@settings(max_examples=100, deadline=None)
+@given(some.data())
+def test_a_damaged_problem_is_read_or_refused(tmp_path_factory, data):
+    """A value anywhere in what a problem asks for is another one."""
+    asked = asking(point_loads=[PUSH], body_forces=[[0, 0, 1]], displacements=[dict(block_index=0)])
+    value = json.loads(json.dumps(asked))
+    holder = value["data"]
+    key = data.draw(some.sampled_from(["boundary_conditions", "contact_properties"]))
+    for _ in range(data.draw(some.integers(0, 6))):
+        inner = holder[key]
+        if not isinstance(inner, (dict, list)) or not inner:
+            break
+        holder = inner
+        keys = [*inner] if isinstance(inner, dict) else range(len(inner))
+        key = data.draw(some.sampled_from(keys))
+    wrong = some.none() | some.booleans() | some.floats() | some.text() | some.just([])
+    holder[key] = data.draw(wrong | some.just({}))
+    path = tmp_path_factory.mktemp("damaged") / "problem.json"
+    path.write_text(json.dumps(value))
+    try:
+        readProblem(path, "results.json")
+    except ValueError as error:
+        assert str(error).isprintable()
 
 
 def test_the_program_ends_with_a_status(tmp_path):

@@ -17,8 +17,10 @@ from ..materials.kinds import RIGID
 from ..terminal import say
 from ..texts import MISREAD
 from ..units import GRAVITY
+from .history import MAX_DISPLACEMENT
 
 STIFFNESS = 1e12  # [Pa/m] of joints of rigid blocks, if the problem has no k_n
+MAX_LEAN = 1000  # [g] as :func:`masonry.stages.lean`
 #: Contacts of compas_dem have their points at corners, and so have joints of three by three points.
 POINTS = "3,3"
 
@@ -105,6 +107,8 @@ def _takeConditions(
         say("note: gravity is False; the weight acts, as LMGC90 in compas_dem always has it")
     problem.body = sum((_numbers(one, "body_forces") for one in body_forces), np.zeros(3))
     problem.gravity = g - problem.body[2]
+    if math.hypot(*problem.body) > MAX_LEAN * GRAVITY:
+        problem.problems.append(f"body_forces {shown([*problem.body])} m/s² are above {MAX_LEAN} g")
     if problem.gravity < 0:
         problem.problems.append(f"body_forces lift the blocks by {-problem.gravity:g} m/s²")
     for load in point_loads:
@@ -119,6 +123,8 @@ def _takeConditions(
         corners = [_numbers(p, "polygon") for p in contentOf(load["polygon"])["points"]]
         areas, middle = areasOf(np.array(corners))
         size, towards = np.linalg.norm(areas), load.get("direction")
+        if not size > 0:
+            raise Refused("surface_loads: polygon without an area")
         towards = areas / size if towards is None else _numbers(towards, "direction")
         force = load["magnitude"] * size * towards
         problem.loads.append((problem.blockAt(load, "surface_loads"), tuple(force), tuple(middle)))
@@ -126,7 +132,13 @@ def _takeConditions(
     for one in displacements:
         own = asked.setdefault(problem.blockAt(one, "displacements"), 6 * [None])
         row = [*(one.get("translation") or 3 * [None]), *(one.get("rotation") or 3 * [None])]
-        own[:] = [old if new is None else float(new) for old, new in zip(own, row)]
+        for value in row:
+            if not (value is None or isNumber(value) and abs(value) <= 1e-3 * MAX_DISPLACEMENT):
+                raise Refused(
+                    f"displacements: {shown(value)} must be None or a number within"
+                    f" ±{1e-3 * MAX_DISPLACEMENT:g} m"
+                )
+        own[:] = [old if new is None else new for old, new in zip(own, row)]
     for n, row in asked.items():
         if axes := "".join(a for a, value in zip("xyzXYZ", row) if value is not None):
             problem.held.setdefault(n, axes)
