@@ -119,7 +119,7 @@ def _edgeOf(problem, corners, forces, gaps, axes):
     ]
     contact = _typed(
         "compas_dem.interactions/FrictionContact",
-        points=places,
+        points=[{"dtype": "compas.geometry/Point", "data": place} for place in places],
         frame=_frame(corners[0], first, second),
         size=float(area),
         mesh=None,
