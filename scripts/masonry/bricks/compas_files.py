@@ -84,7 +84,7 @@ def readCompas(path: FilePath) -> CompasFile:
         problem = contentOf(data)
         of = lambda key: contentOf(problem.get(key) if isinstance(problem, dict) else None) or {}
         found = CompasFile(stones, of("boundary_conditions"), of("contact_properties"), data)
-        [*found.beside()]
+        [*found.beside()]  # reads all that it names
     except Refused:
         raise
     except MISREAD as error:
