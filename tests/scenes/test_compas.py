@@ -101,6 +101,31 @@ def test_an_edge_has_what_compas_dem_reads(solve):
     assert edge["face_contact"] and not edge["edge_contact"] and not edge["point_contact"]
 
 
+def test_each_block_has_the_density_of_its_material(solve):
+    asked = problem(STACK, [0])
+    model = asked["data"]["model"]["data"]
+    model["materials"]["light"] = typed("compas_dem.material/Stone", density=DENSITY / 4)
+    model["elements"]["block 1"]["data"]["material"] = "light"
+    [(_, _, edge)] = edges(solve(asked))
+    assert edge["force"] == approx([0, 0, -WEIGHT / 4], abs=1e-3 * WEIGHT)
+
+
+@mark.parametrize(
+    "contact, friction, normal, shear",
+    [
+        (dict(mu=0.7), 0.7, 1e12, 4e11),
+        (dict(phi=45, mu=0.1), 1, 1e12, 4e11),  # compas_dem takes phi, too
+        (dict(mu=0.5, k_n=1e10), 0.5, 1e10, 4e9),
+        (dict(mu=0.5, k_n=1e10, k_t=1e9), 0.5, 1e10, 1e9),
+    ],
+)
+def test_joints_are_those_of_the_contact_model(tmp_path, contact, friction, normal, shear):
+    (tmp_path / "a.json").write_text(json.dumps(problem(STACK, [0], **contact)))
+    bed = readProblem(tmp_path / "a.json", "results.json").masonry.joints["bed"]
+    found = bed.friction, bed.residualFriction, bed.normalStiffness, bed.shearStiffness
+    assert found == approx((friction, friction, normal, shear))
+
+
 def test_a_support_that_moves_takes_the_block_on_it_along(solve):
     graph = solve(problem(STACK, [0], [(0, (0.004, 0.002, 0.001))]))
     for node in graph["node"].values():
