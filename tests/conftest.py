@@ -51,7 +51,7 @@ WITHOUT_YADE += [
     f"package/test_{name}.py"
     for name in """
     accelerograms bricks bricks_checks bricks_files bricks_vaults compare_builds compare_loops
-    cycles loops measured_loops plain_wall stones
+    compas_files cycles loops measured_loops plain_wall stones
     """.split()
 ]
 #: Fixtures that many tests share.

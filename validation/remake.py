@@ -173,20 +173,12 @@ def ofStudies():
     inYade = lambda path, *words: (*YADE, f"validation/{path}", *words)
     own = lambda folder: (f"validation/{folder}/*.py", f"validation/{folder}/case.json")
     walls = ("scripts/wall_comp*.py",)
+    module = lambda *words: (PYTHON, "-m", *words)
     study = lambda path: (
-        (
-            PYTHON,
-            "-m",
-            "masonry_study",
-            f"validation/{path}.py",
-            "--out",
-            f"results/validation/{path}",
-        ),
-        (PYTHON, "-m", "masonry_study.report", f"results/validation/{path}"),
+        module("masonry_study", f"validation/{path}.py", "--out", f"results/validation/{path}"),
+        module("masonry_study.report", f"results/validation/{path}"),
     )
-    loops = [
-        (law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")
-    ]
+    loops = [(law, law) for law in ("cyclic", "softening")]
     return [
         Result(
             "closed_forms",
@@ -217,6 +209,14 @@ def ofStudies():
             (),
             (*own("statics"), *ALL),
             10,
+        ),
+        Result(
+            "barrel_vault",
+            (program("barrel_vault/barrel_vault.py"),),
+            (),
+            (*own("barrel_vault"), "scripts/masonry/scene/compas_*.py", *RIGID),
+            1,
+            limits=True,
         ),
         Result(
             "held_loads",

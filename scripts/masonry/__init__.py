@@ -101,7 +101,7 @@ _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
 _WITHOUT_YADE = """
     arguments background bricks errors fields folders host materials memory moved notebook numbers
-    packages terminal units wings
+    packages terminal texts units wings
 """.split()
 
 

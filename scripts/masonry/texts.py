@@ -15,6 +15,7 @@ import csv
 import os
 import re
 import stat
+import struct
 from dataclasses import dataclass, field
 
 from .arguments import FilePath, shown
@@ -31,6 +32,12 @@ _TOUCHING = re.compile(rf"(?:{_DECIMAL}(?:[EeDd][+-]?[0-9]{{1,3}})?){{2,}}")
 _ONE_TOUCHING = re.compile(rf"{_DECIMAL}(?:[EeDd][+-]?[0-9]{{1,3}})?")
 #: A decimal comma that is no mark between columns: digits on both sides.
 _COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[EeDd][+-]?[0-9]+)?")
+
+#: Errors of damaged files.
+MISREAD = (
+    *(OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError),
+    *(RecursionError, struct.error, OverflowError),
+)
 
 
 @dataclass(frozen=True)

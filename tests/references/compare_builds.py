@@ -77,9 +77,10 @@ class Build:
     scripts: str
 
     def scenes(self):
-        """Paths of the scenes by their names."""
+        """Paths of the scenes by their names, without compas.py, which needs a file."""
         paths = [p for f in ("", "gallery") for p in glob.glob(f"{self.scripts}/{f}/*.py")]
-        return {os.path.basename(p)[:-3]: p for p in paths if "Scene(" in open(p).read()}
+        found = {os.path.basename(p)[:-3]: p for p in paths if "Scene(" in open(p).read()}
+        return {name: path for name, path in found.items() if name != "compas"}
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,11 @@ def test_the_gallery_has_as_many_scenes_as_the_readme_says():
     assert (number, len(GALLERY)) == ("22", 22)
 
 
-def test_every_scene_is_of_the_gallery_or_published_and_the_manual_has_it():
+def test_every_scene_is_of_the_gallery_published_or_of_compas_and_the_manual_has_it():
     folders = os.path.join(ROOT, "scripts"), os.path.join(ROOT, "scripts", "gallery")
     paths = [path for folder in folders for path in glob.glob(os.path.join(folder, "*.py"))]
     scenes = [os.path.basename(p)[:-3] for p in paths if "Scene(" in open(p).read()]
-    assert sorted(scenes) == sorted(GALLERY + PUBLISHED)
+    assert sorted(scenes) == sorted([*GALLERY, *PUBLISHED, "compas"])
     with open(os.path.join(ROOT, "scripts", "README.md")) as f:
         manual = f.read()
     links = [f"[{n}]({os.path.relpath(scenePath(n), folders[0])})" for n in scenes]

@@ -49,6 +49,7 @@ REASONS = {
     ),
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
+    r".*compas\.py": "needs a problem of compas_dem: tests/scenes/test_compas.py",
     r".*-m masonry_capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",

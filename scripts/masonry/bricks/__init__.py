@@ -12,7 +12,8 @@ to face. These functions make one, and raise ValueError with all problems at onc
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces;
 - :func:`stack` and :func:`block`: boxes;
-- :func:`fromFile`: one block for each convex solid of a file;
+- :func:`fromFile`: one block for each convex solid of a file; :func:`readCompas`: what a file of
+  COMPAS says beside them;
 - :func:`fromOutlines`: stones of a drawing, with mortar between them.
 
 Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from. Their
@@ -37,6 +38,7 @@ from .beams import Beam, Floor
 from .blocks import Block, Bricks, summary
 from .checks import Joint
 from .block_files import fromFile
+from .compas_files import readCompas
 from .geometry import boxCorners
 from .houses import House, Storey
 from .openings import Lintel, Opening
@@ -68,6 +70,7 @@ __all__ = [
     "fromFile",
     "fromOutlines",
     "leastTrace",
+    "readCompas",
     "stack",
     "summary",
 ]

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
 
-The formats are read here: meshio refuses PLY whose faces have colours or are called vertex_index,
-loses the names of groups (OBJ) and of solids (STL as text), takes triangles alone (OFF), and knows
-no COMPAS.
+The formats are read here, COMPAS in :mod:`masonry.bricks.compas_files`: meshio refuses PLY whose
+faces have colours or are called vertex_index, loses the names of groups (OBJ) and of solids (STL as
+text), and takes triangles alone (OFF).
 """
 
-import json
 import math
 import os
 import re
@@ -22,9 +21,10 @@ import numpy as np
 from ..arguments import FilePath, number, validated
 from ..errors import Refused
 from ..terminal import say
-from ..texts import TextFile
+from ..texts import MISREAD, TextFile
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
+from .compas_files import readCompas
 from .geometry import FLAT
 from .stones.mortar import closed
 
@@ -67,11 +67,11 @@ def fromFile(
     brick of its own.
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid``
-    is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS with meshes. Solids in one group may
-    touch. Parts have the names of groups, or of the file; groups of one solid each whose names
-    differ in a number at their end alone are one part. Faces run counter-clockwise seen from
-    outside, or all of them clockwise. Where rounded numbers bend a face, it is made plane, with a
-    note.
+    is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS, of which :func:`readCompas` also
+    gives supports, densities, contact properties and loads. Solids in one group may touch. Parts
+    have the names of groups, or of the file; groups of one solid each whose names differ in a
+    number at their end alone are one part. Faces run counter-clockwise seen from outside, or all of
+    them clockwise. Where rounded numbers bend a face, it is made plane, with a note.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks
@@ -117,13 +117,6 @@ def _parts(names):
     stems = {name: re.sub(r"[\s_.#:-]*\d+$", "", name) for name in counts if counts[name] == 1}
     alike = Counter(stem for stem in stems.values() if stem)
     return [stems[name] if name in stems and alike[stems[name]] > 1 else name for name in names]
-
-
-#: Errors of damaged files.
-MISREAD = (
-    *(OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError),
-    *(RecursionError, struct.error, OverflowError),
-)
 
 
 # -- formats ---------------------------------------------------------------------------------------
@@ -347,42 +340,13 @@ def _binaryNumbers(body, order):
 
 
 def _readJson(path):
-    data = json.loads("\n".join(TextFile(path).lines))
-    found = list(_meshes(data, ""))
-    if not found:
-        raise ValueError("no mesh: nothing with both vertex and face")
-    for n, (name, mesh) in enumerate(found):
-        defaults = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
-        keys = {key: k for k, key in enumerate(mesh["vertex"])}
-        points, digits = [], 0
-        for key, vertex in mesh["vertex"].items():
-            point = [vertex.get(axis, defaults.get(axis, 0.0)) for axis in "xyz"]
-            words = [str(x) for x in point]
-            points.append(_point(words, f"of vertex {key}"))
-            digits = max(digits, _decimals(words))
-        faces = []
-        for key, face in mesh["face"].items():
-            missing = [v for v in face if str(v) not in keys]
-            if missing:
-                raise ValueError(f"face {key} has a vertex {missing[0]} that is none")
-            faces.append(tuple(keys[str(v)] for v in face))
-        name = name or (f"{_plain(path)} {n}" if len(found) > 1 else _plain(path))
-        yield _Surface(name, np.array(points), faces, digits)
-
-
-def _meshes(data, name):
-    """Every COMPAS mesh, with the name of it or its holder."""
-    if isinstance(data, dict):
-        own = data.get("attributes")
-        own = own.get("name") if isinstance(own, dict) else None
-        name = own or data.get("name") or name
-        name = name if isinstance(name, str) else ""
-        if isinstance(data.get("vertex"), dict) and isinstance(data.get("face"), dict):
-            yield name, data
-            return
-        data = list(data.values())
-    for value in data if isinstance(data, list) else ():
-        yield from _meshes(value, name)
+    found = readCompas(path)
+    if beside := list(found.beside()):
+        say(f"note: fromFile: {path} also has {', '.join(beside)}: bricks.readCompas gives them")
+    names = [stone.name or _plain(path) for stone in found.stones]
+    for n, (name, stone) in enumerate(zip(names, found.stones)):
+        own = f"{name} {n}" if names.count(name) > 1 else name
+        yield _Surface(own, stone.points, stone.faces, stone.digits)
 
 
 _READERS = {

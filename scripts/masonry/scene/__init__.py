@@ -17,6 +17,8 @@
   :mod:`masonry.scene.summary`: what a scene is, in words
 - :mod:`masonry.scene.script`: the commands of a script, as data; :mod:`masonry.scene.resuming`:
   what a resumed run finds in place of the stages that were over
+- :mod:`masonry.scene.compas_problems`: problems of compas_dem as bricks, masonry, supports and
+  loads; :mod:`masonry.scene.compas_results`: their results
 """
 
 import importlib
