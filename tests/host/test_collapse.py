@@ -196,30 +196,41 @@ def test_a_base_that_turns_with_all_its_blocks_is_no_collapse():
 # -- the balance -----------------------------------------------------------------------------------
 
 
-def pushed(share, steps, watch=True):
-    """A block under a force up, a share of its weight, whose work nobody counts."""
-    weight = G * standing(joint=MasonryJoint(elastic=True), damping=0.3).mass
-    energy().watch = watch
-    O.forces.setPermF(1, Vector3(0, 0, share * weight))
-    go(steps * O.dt)
+def lifted(share, steps=3000):
+    """Lift the base by hand so that the work that nobody counts, the weights of base and block
+    times the lift, is a share of that of the block's settlement."""
+    base, block = (O.bodies[n].state for n in (0, 1))
+    settlement = base.displ()[2] - block.displ()[2]
+    lift = share * settlement * block.mass / (block.mass + base.mass)
+    for _ in range(steps):
+        base.pos += Vector3(0, 0, lift / steps)
+        O.step()
+
+
+def resting():
+    standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    run(3000)
 
 
 @mark.parametrize("watch", [True, False])
 def test_a_balance_that_is_off_is_reported_once_while_it_is_watched(capfd, watch):
-    pushed(-5, 2500, watch)
+    resting()
+    energy().watch = watch
+    lifted(0.05)
     text = capfd.readouterr().err
-    said = re.findall(r"at step 1000 the energy balance is off by (\S+) %", text)
+    said = re.findall(r"the energy balance is off by (\S+) %", text)
     assert text.count("warning") == len(said) == energy().warned == watch
-    off = 100 * imbalance()
-    assert all(float(one) == approx(off, rel=0.3) for one in said)
+    assert all(1 < float(one) < 100 * abs(imbalance()) for one in said)
 
 
-@mark.parametrize("share", [0.0, -0.0091, -0.0111, -0.05, 0.05])
+@mark.parametrize("share", [0.0, -0.0091, -0.0111, 0.0091, 0.0111, -0.05, 0.05])
 def test_a_balance_is_reported_from_one_per_cent_of_the_work_on(capfd, share):
-    """An uncounted force F down beside the weight W moves the block by u: (W + F) u is taken up,
-    and W u is counted. One up takes its share of W u."""
-    pushed(share, 2500)
-    off = share / (1 - min(share, 0))
+    """A lift takes its share of the work of the weight, W u, from what is counted, which is the
+    largest work then; the base that sinks adds it."""
+    resting()
+    lifted(share)
+    run(1000)  # until the next look
+    off = -share / (1 - min(share, 0))
     assert balance()["error"] == approx(off, abs=2e-4)
     assert energy().warned == (abs(off) > 0.01)
     said = "the energy balance is off by" in capfd.readouterr().err
@@ -227,59 +238,13 @@ def test_a_balance_is_reported_from_one_per_cent_of_the_work_on(capfd, share):
 
 
 def test_a_wrong_balance_is_reported_again_when_it_is_twice_as_large(capfd):
-    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    resting()
     reported = 0
-    for share, again in ((0.02, True), (0.04, False), (0.5, True), (0.6, False)):
-        O.forces.setPermF(1, Vector3(0, 0, -share * G * s.mass))
-        go(4500 * O.dt)
+    for share, again in ((0.02, True), (0.01, False), (0.05, True), (0.03, False)):
+        lifted(share, 1)
+        run(4500)
         error = imbalance()
         assert (error > 2 * reported) == again
         text = capfd.readouterr().err
         assert text.count("the energy balance is off by") == again
         reported = error if again else reported
-
-
-SOFT = dict(normalStiffness=1e7, shearStiffness=5e6)  # energies far above round-off
-ELASTIC = dict(tensileStrength=1, cohesion=0, elastic=True, **SOFT)
-RUBBING = dict(friction=0.1, **SOFT)
-MOVING = (
-    {  # properties of the joint, its damping [s], velocity [m/s], and an energy that is not small
-        "vibrating": (ELASTIC, 0, 0, "elastic_compression"),
-        "damped": (ELASTIC, 2e-4, 0, "damping"),
-        "sliding": (RUBBING, 0, 0.4, "dissipated_shear"),
-    }
-)
-
-
-@mark.parametrize("kind", MOVING)
-def test_nothing_is_reported_while_undamped_blocks_move(capfd, kind):
-    properties, damping, speed, taken = MOVING[kind]
-    s = standing(dry(**properties), FLAT)
-    loop().stiffnessDamping = damping
-    O.dt = 0.1 * criticalTimeStep()[0]
-    s.blockedDOFs = "yXYZ"
-    s.vel = Vector3(speed, 0, 0)
-    for _ in range(3500):
-        O.step()
-        assert not energy().warned
-    b = balance()
-    assert abs(b["error"]) < 1e-9
-    assert b[taken] > 0.05 * (b["gravity"] + b["external"])
-    assert capfd.readouterr().err == ""
-
-
-@FUNCTORS
-def test_the_balance_of_a_run_that_a_collapse_ended_is_that_of_one_instant(functors):
-    s = standing(dry(**RUBBING), FLAT, functors=functors)
-    s.blockedDOFs = "yXYZ"
-    s.vel = Vector3(3, 0, 0)
-    O.dt *= 0.1
-    O.step()
-    with raises(RuntimeError, match="^collapsed: block 1 has slid"):
-        while True:
-            before = balance()
-            assert abs(before["error"]) < 1e-9
-            O.step()
-    b = balance()
-    assert abs(b["error"]) < 1e-9
-    assert abs(b["kinetic"] - before["kinetic"]) > 1e-6 * b["kinetic"]

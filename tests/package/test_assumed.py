@@ -153,7 +153,7 @@ def test_an_elastic_joint_needs_no_strength(tmp_path):
 def test_a_scene_prints_once_what_it_assumes_and_writes_it(tmp_path, capsys):
     made = standing(tmp_path, TWO, own(), "--density-scaling", "4")
     made.settle()
-    made.run(0.001)
+    made.settle()
     made.finish()
     said = capsys.readouterr().out
     assert said.count("assumed, because it was not given") == 1
