@@ -55,6 +55,11 @@ class MasonryJointLoop : public EngineAdapter<MasonryJointLoop>, public JointLoo
               number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
                           "the difference between few and many points of those that were cracked"),
               ReadOnly);
+        visit("overestimate", &L::overestimate,
+              number("-", "Estimate of the largest share of its load by which the structure would fall earlier if the "
+                          "beds of dry joints that have opened and keep three points were continuous")
+                  .source("yade_plugin/README.md, Points where a joint yields"),
+              ReadOnly);
         visit("geometry", &L::geometry, described("Ig2 functor with which masonry.connect() makes joints"));
         visit("physics", &L::physics, described("Ip2 functor with which masonry.connect() makes joints"));
     }
@@ -69,10 +74,6 @@ class MasonryJointLoop : public EngineAdapter<MasonryJointLoop>, public JointLoo
                          "and have always been elastic. It is known from the first step on.");
         cls.add_property("refinedJoints", &MasonryJointLoop::refinedJoints,
                          "Number of joints that have more points than they were made with; see points.");
-        cls.add_property("overestimate", &MasonryJointLoop::overestimate,
-                         "Estimate of the largest share of its load [-] by which the structure would fall earlier if "
-                         "the beds of dry joints that have opened, and keep three points, were continuous: "
-                         "yade_plugin/README.md, Points where a joint yields. It is not saved.");
     }
 
     void step(SceneStore&);
@@ -81,7 +82,6 @@ private:
     int groups() const;
     int intactJoints() const;
     int refinedJoints() const;
-    double overestimate() const { return refining_.overestimate(); }
 
     // Both hold no state: all that they keep from step to step follows from the scene.
     JointPlan plan_;

@@ -305,8 +305,8 @@ bool Refinement::hasCracked(const JointKind& kind, int j) {
 }
 
 // Points of a joint that has reached this part of what opens it, if its bed is compliant.
-PointCounts Refinement::countsIfOpening(const SceneContents& store, const JointKind& kind, const Limit& limit,
-                                        double part, int j) {
+PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& kind, const Limit& limit, double part,
+                                        int j) {
     if (!limit.dry() && !hasCracked(kind, j)) return {};
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.unsynchronised();
@@ -340,9 +340,9 @@ PointCounts Refinement::countsIfOpening(const SceneContents& store, const JointK
     const bool leans = closure * height * height >= leastLean * r.span()[0] * width * width;
     if (!limit.opened().along || (!points_ && !leans)) {
         const int few = limit.row() ? fewest : fewest * fewest;
+        auto& estimate = store.loop->overestimate;
         if (limit.dry() && shapes.points <= few)
-            overestimate_ =
-                std::max(overestimate_, 1.8 * std::cbrt(closure * (height + r.span()[0]) / (width * width)));
+            estimate = std::max(estimate, 1.8 * std::cbrt(closure * (height + r.span()[0]) / (width * width)));
         return {};
     }
     auto counts = limit.opened();
@@ -449,7 +449,7 @@ bool Refinement::yields(const JointKind& kind, const Limit& limit, double part, 
 }
 
 // The points that a joint gets which has reached this part of a limit; none if it keeps those that it has.
-PointCounts Refinement::countsIfDue(const SceneContents& store, const JointKind& kind, const Limit& limit, double part,
+PointCounts Refinement::countsIfDue(SceneContents& store, const JointKind& kind, const Limit& limit, double part,
                                     int j) {
     if (kind.shapes->converted[j]) return {};
     const auto now = kind.shapes->refined[j].points;

@@ -41,10 +41,6 @@ public:
     // of the step before, half of which act along this one.
     void count(SceneContents&);
 
-    // Estimate of the largest share of its load by which the structure would fall earlier on continuous beds than with
-    // the three points of dry joints that have opened so far and keep them.
-    double overestimate() const { return overestimate_; }
-
     // Gives the joints of a scene the numbers of points in `refined`, one entry a joint in the store's order; 0 stands
     // for the points that a joint was made with. The state of a joint whose points change is that of a
     // new one, and SceneStore must read the joints again. Returns false, and changes nothing, if a joint cannot have
@@ -81,8 +77,8 @@ private:
     void readLimits(const SceneContents&);
     bool yields(const JointKind&, const Limit&, double part, int joint) const;
     static bool hasCracked(const JointKind&, int joint);
-    PointCounts countsIfOpening(const SceneContents&, const JointKind&, const Limit&, double part, int joint);
-    PointCounts countsIfDue(const SceneContents&, const JointKind&, const Limit&, double part, int joint);
+    PointCounts countsIfOpening(SceneContents&, const JointKind&, const Limit&, double part, int joint);
+    PointCounts countsIfDue(SceneContents&, const JointKind&, const Limit&, double part, int joint);
     void readParts(const SceneContents&);
     double extentOf(const JointReference&, int axis) const;
     double widthOf(const SceneContents&, const JointReference&, int axis);
@@ -106,7 +102,6 @@ private:
     std::map<int, Eigen::AlignedBox3d> sizes_;                // around the joints of each part
     std::map<std::pair<const Polygon*, int>, double> widths_; // see widthOf(), by the joint and the axis
     long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these three were read
-    double overestimate_ = 0;
 };
 
 } // namespace masonry
