@@ -20,8 +20,8 @@ def rotation(lever):
 
 def largestLoad(lever, stiffness, count):
     """The largest load [N] of a column of its own weight, with a fixed foot, at this lever over the
-    side at its head. From the slope of its top block on, each joint turns what is below it back; the
-    foot must become upright."""
+    side at its head. From the slope of its top block on, each joint turns what is below it back;
+    the foot must become upright."""
     weight, height = DENSITY * G * SIDE**2 * HEIGHT / count, HEIGHT / count / SIDE
 
     def reaches(load):
