@@ -362,21 +362,32 @@ def test_without_a_word_joints_get_eight_points_and_five_a_side_in_space():
 # -- dry joints that open --------------------------------------------------------------------------
 
 
-def leaning(stiffness, lever=(0.04, 0.0), load=2.5e3, law="softening", inPlane=True, most=0):
+def leaning(
+    stiffness,
+    lever=(0.04, 0.0),
+    load=2.5e3,
+    law="softening",
+    inPlane=True,
+    most=0,
+    wall=False,
+    **bond,
+):
     """The points of the joints of a column of five dry blocks of 0.2 × 0.2 × 0.1 m, which an
     eccentric load presses; then of the same after it has been saved and loaded."""
     O.reset()
     unit = unitMaterial(young=1e6 * stiffness, poisson=0.2)
+    if wall:  # a structure beside it
+        pile(2, x=5, size=(9, 0.2, 0.1), material=unit, inPlane=inPlane)
     top = pile(6, size=(0.2, 0.2, 0.1), material=unit, inPlane=inPlane)[-1]
     head = MasonryLoad(body=top, point=(0.1 + lever[0], 0.1 + lever[1], 0.6), damped=True)
     dry = dict(tensileStrength=0, cohesion=0, friction=2, residualFriction=2, cap=False, law=law)
-    dry.update(normalStiffness=stiffness, shearStiffness=stiffness)
+    dry.update(normalStiffness=stiffness, shearStiffness=stiffness, **bond)
     around = dict(gravity=(0, 0, 0), damping=0.7, inPlane=inPlane, subcontacts=3)
     joints = join(MasonryJoint(**dry), loads=[head], **around)
     loop().points = most
     head.force = Vector3(0, 0, -load)
     run(3000)
-    return joints
+    return [j for j in joints if j.geom.centres[0][0] < 1]
 
 
 @LAWS
@@ -387,6 +398,29 @@ def test_dry_joints_get_points_where_a_compliant_bed_opens(law):
         assert min(max(s[0] for s in j.phys.stress) for j in joints) >= -1e-3  # they are open
     assert {len(j.geom.areas) for j in leaning(1e9, (0.01, 0.0), law=law)} == {3}  # closed
     assert {len(j.geom.areas) for j in leaning(1e9, law=law, most=3)} == {3}
+    assert {len(j.geom.areas) for j in leaning(1e12, law=law, most=12)} == {12}  # as was asked for
+
+
+def test_a_joint_whose_bond_has_cracked_gets_the_points_of_a_dry_one():
+    bond = dict(tensileStrength=1e2, modeIFractureEnergy=1e-4)
+    bond.update(cohesion=1e3, modeIIFractureEnergy=1e-2)
+    assert {len(j.geom.areas) for j in leaning(1e9, **bond)} == {14}
+    assert {len(j.geom.areas) for j in leaning(1e12, **bond)} == {8}
+
+
+def test_a_structure_beside_a_column_does_not_count():
+    assert {len(j.geom.areas) for j in leaning(1e9, wall=True)} == {14}
+
+
+def test_what_continuous_beds_would_hold_less_is_estimated():
+    """By the lean at which a linear bed and the weight on it turn a structure over:
+    1.8·(σ·H/(kn·W²))^(1/3)."""
+    leaning(1e9)
+    assert loop().overestimate == 0  # its joints have their points
+    leaning(1e12)
+    atRest = 1.8 * (2.5e3 / 0.04 * 0.5 / 1e12 / 0.04) ** (1 / 3)
+    # the load is put on at once, which presses joints up to twice as much
+    assert atRest < loop().overestimate < 2 ** (1 / 3) * atRest
 
 
 @mark.parametrize(

@@ -325,6 +325,9 @@ def prism_tips(quick):
 # -- panels ----------------------------------------------------------------------------------------
 
 SLENDER, COURSES = (0.1, 0.5, 0.2), 12  # a block of a strip [m], and their number
+#: The closed form is of rigid blocks that turn about their edges: with 14 points where they open, a
+#: strip on 2e11 Pa/m holds 8 to 11 % less.
+EDGES = ["--points", "3"]
 
 
 PLATEN = 0.02  # height of the platen on a strip [m]
@@ -358,7 +361,7 @@ def panelFactor(over, arm, guide):
 def panel(over, quick, rotation, stiffness=2e11):
     """Factor of the closed form, and bracket of the engine [g], of a strip in the x-z plane."""
     blocks = bricks.stack(COURSES, SLENDER)
-    with sceneOf(blocks, rigidlike(2, stiffness)) as s:
+    with sceneOf(blocks, rigidlike(2, stiffness), EDGES) as s:
         s.platen("bottom")
         top = s.platen("top", rotation=rotation, guided="x", height=PLATEN)
         s.press(top, over * 2600 * G * COURSES * SLENDER[2])
@@ -408,7 +411,7 @@ def panel_far_edge(quick):
     quick=True,
 )
 def panel_free(quick):
-    with sceneOf(bricks.stack(COURSES, SLENDER), rigidlike(2, 2e11)) as s:
+    with sceneOf(bricks.stack(COURSES, SLENDER), rigidlike(2, 2e11), EDGES) as s:
         s.platen("bottom")
         s.settle()
         expected = SLENDER[0] / (COURSES * SLENDER[2])

@@ -55,6 +55,11 @@ class MasonryJointLoop : public EngineAdapter<MasonryJointLoop>, public JointLoo
               number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
                           "the difference between few and many points of those that were cracked"),
               ReadOnly);
+        visit("overestimate", &L::overestimate,
+              number("-", "Estimate of the largest share of its load by which the structure would fall earlier if the "
+                          "beds of dry joints that have opened and keep three points were continuous")
+                  .source("yade_plugin/README.md, Points where a joint yields"),
+              ReadOnly);
         visit("geometry", &L::geometry, described("Ig2 functor with which masonry.connect() makes joints"));
         visit("physics", &L::physics, described("Ip2 functor with which masonry.connect() makes joints"));
     }

@@ -59,7 +59,7 @@ def engines(
     :param gravity: [m/s²]
     :param points: points along a side of a joint between rigid blocks that is about to yield:
         ``MasonryJointLoop.points``. None: 8 where blocks move in a plane, 5 in space, 14 where a
-        dry joint on a compliant bed opens. Functors keep those of the next two
+        dry or cracked joint on a compliant bed opens. Functors keep those of the next two
     :param subcontacts: points along a joint until then, at right angles to its rows; None: 3. The
         ends of a joint are points, so a block rocks about its edge at the true moment
     :param rows: rows of subcontacts across a joint; None or 0: one where its blocks can only turn

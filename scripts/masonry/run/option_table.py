@@ -158,9 +158,9 @@ _ROWS = (
         " measures, or combined damping, which does not brake a steady motion"
     ),
     Option("points", points, value="N", chosen=True).means(
-        "points along a joint of rigid units from when it is about to yield or, dry on a compliant"
-        " bed, to open, at its ends and between them (Gauss-Lobatto), in space along each side of"
-        " its face that does; None: 8, 5 in space, and 14 where it opens. Until"
+        "points along a joint of rigid units from when it is about to yield or, dry or cracked, to"
+        " open, at its ends and between them (Gauss-Lobatto), in space along each side of its face"
+        " that does; None: 8, 5 in space, and 14 where it opens on a compliant bed. Until"
         " then a joint has three, with which an elastic joint is exact; N,M gives all joints M"
         " points from the beginning. How few are enough: validation/convergence"
     ),

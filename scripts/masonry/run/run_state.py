@@ -55,6 +55,7 @@ class RunState:
     far: float = 0.0  # masonry.model.motion.Motion.far
     answers: dict = field(default_factory=dict)  # by the keys of masonry.stages.answers.keep
     notes: list = field(default_factory=list)  # what the run said, as in run.json
+    overestimate: float = 0.0  # by joints with three points, as a note has said it last [-]
     supportsMoved: bool = False  # whether a stage has moved supports
     #: When the widest crack was looked for last, and its width: number of the time step, and [mm].
     widest: list = field(default_factory=list)

@@ -5,12 +5,16 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace masonry {
 
 namespace {
 
 using Points = std::vector<JointPoint>;
+
+constexpr double leastParallel = 0.7;   // cosine of the angle between joints whose blocks are no corners of a structure
+constexpr double parallelBeds = 0.9998; // the same between both beds of a block that is no wedge
 
 constexpr double close = 1e-9; // over the length of a row: points that are nearer to each other are one
 
@@ -249,24 +253,26 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.stat
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
     const auto& coarse = kind.shapes->refined[0].coarse;
-    const bool dry = !(p.tensileStrength > 0 || p.cohesion > 0);
-    if (p.elastic || kind.attached || (coarse && !dry)) return;
+    dry_ = !(p.tensileStrength > 0 || p.cohesion > 0);
+    if (p.elastic || kind.attached) return;
     const auto now = coarse ? *coarse : pointsOf(kind);
     row_ = isRow(now);
+    opens_ = dry_ || columns.column(Role::BondDamage, 0, 0);
     const auto found = [&](int along, int across) {
         const PointCounts counts{along, row_ ? 1 : across};
         const auto then = refinedPoints(first, counts);
         return then.size() > now.size() && sameMoments(now, then) ? counts : PointCounts{};
     };
-    if (dry) {
+    if (opens_) {
         const int most = row_ || first.polygon().size() == 4 ? pointsOfOpening : pointsOfFan;
         opened_ = found(wanted ? wanted : most, fewest);
     }
+    if (coarse && !dry_) return;
     const int count = wanted ? wanted : row_ ? pointsOfRow : pointsOfSide;
     const auto counts = found(count, count);
     if (!counts.along) return;
     elasticLimit_ = columns.law().compression().elasticLimit;
-    cracks_ = (elasticLimit_ == 0 || !row_) && columns.column(Role::BondDamage, 0, 0) && !dry;
+    cracks_ = (elasticLimit_ == 0 || !row_) && columns.column(Role::BondDamage, 0, 0) && !dry_;
     if (elasticLimit_ == 0 && !cracks_) return;
     yielded_ = counts;
     if (!cracks_) return;
@@ -290,8 +296,18 @@ bool Refinement::Limit::yields(double sigma, double a, double b) const {
     return f.tension > 0 || f.slip > 0;
 }
 
+// Whether a point of a joint has lost bond.
+bool Refinement::hasCracked(const JointKind& kind, int j) {
+    const auto& columns = *kind.states->columns.unsynchronised();
+    for (int p = 0; p < kind.shapes->points && kind.shapes->pointwise[j]; ++p)
+        if (const double* damage = columns.column(Role::BondDamage, p, j); damage && *damage > 0) return true;
+    return false;
+}
+
 // Points of a joint that has reached this part of what opens it, if its bed is compliant.
-PointCounts Refinement::countsIfOpening(const JointKind& kind, const Limit& limit, double part, int j) const {
+PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& kind, const Limit& limit, double part,
+                                        int j) {
+    if (!limit.dry() && !hasCracked(kind, j)) return {};
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.unsynchronised();
     const double k = columns.stiffness().normal;
@@ -310,24 +326,106 @@ PointCounts Refinement::countsIfOpening(const JointKind& kind, const Limit& limi
     }
     if (!(force < 0) || highest * area < (1 - part) * force) return {};
     middle /= area;
-    Vector3r lever = pressed / force - middle; // of the force
-    lever[0] = 0;
-    const auto& r = shapes.joints[j];
-    const double height = size_.dot(r.normal.cwiseAbs());
-    const double width = size_.dot((r.axes() * lever).cwiseAbs()) / lever.norm();
-    if (!(-force / area * height * height >= leastLean * k * r.span()[0] * width * width)) return {};
-    auto counts = limit.opened();
-    if (limit.row()) return counts;
-    double along = 0, across = 0; // squares of what opens the joint along and across it
+    const Vector3r lever = pressed / force - middle; // of the force
+    double along = 0, across = 0;                    // squares of what opens the joint along and across it
     for (int p = 0; p < shapes.points; ++p) {
         const Vector3r arm = shapes.offsetAt(p, j) - middle;
         along += shapes.areaAt(p, j) * arm[2] * arm[2] * lever[1] * lever[1];
         across += shapes.areaAt(p, j) * arm[1] * arm[1] * lever[2] * lever[2];
     }
-    if (across > along) std::swap(counts.along, counts.across);
+    const bool turned = !limit.row() && across > along;
+    const auto& r = shapes.joints[j];
+    const double height = extentOf(r, 0), width = widthOf(store, r, turned ? 2 : 1);
+    const double closure = -force / area / k; // mean [m]
+    const bool leans = closure * height * height >= leastLean * r.span()[0] * width * width;
+    if (!limit.opened().along || (!points_ && !leans)) {
+        const int few = limit.row() ? fewest : fewest * fewest;
+        auto& estimate = store.loop->overestimate;
+        if (limit.dry() && shapes.points <= few)
+            estimate = std::max(estimate, 1.8 * std::cbrt(closure * (height + r.span()[0]) / (width * width)));
+        return {};
+    }
+    auto counts = limit.opened();
+    if (limit.row()) return counts;
+    if (turned) std::swap(counts.along, counts.across);
     if (std::min(along, across) > both * both * std::max(along, across))
         counts.along = counts.across = std::min(pointsOfBoth, std::max(counts.along, counts.across));
     return counts;
+}
+
+// Extent of the joints of a connected part [m] along an axis of one of them.
+double Refinement::extentOf(const JointReference& r, int axis) const {
+    for (const auto& side : r.sides)
+        if (const auto found = sizes_.find(partOf_[side.body]); found != sizes_.end())
+            return found->second.sizes().dot(r.axes().col(axis).cwiseAbs());
+    return 0;
+}
+
+// Width of a structure [m] along an axis of one of its joints: the extent of the joints without a gap beside it that
+// lie in its plane, to half of the distance of its blocks; where a block is a wedge, the extent of the part.
+double Refinement::widthOf(const SceneContents& store, const JointReference& r, int axis) {
+    const auto place = std::make_pair(r.corners.get(), axis);
+    if (const auto known = widths_.find(place); known != widths_.end()) return known->second;
+    const auto axes = r.axes();
+    const auto boxOf = [&](const Polygon& corners) { // in the axes of the joint
+        Eigen::AlignedBox3d box;
+        for (const auto& corner : corners)
+            box.extend(Vector3r(axes.transpose() * (corner - r.polygon()[0])));
+        return box;
+    };
+    const auto own = boxOf(r.polygon());
+    const double gap = 0.1 * own.sizes()[axis], apart = 0.5 * r.span()[0];
+    const int other = 3 - axis;
+    std::vector<std::pair<double, double>> beside; // stretches along the axis
+    for (const auto& joint : store.joints) {
+        const auto& that = joint.geom->reference();
+        const double parallel = std::abs(that.normal.dot(r.normal));
+        if (parallel < leastParallel) continue;
+        for (const auto& side : r.sides)
+            for (const auto& body : {that.sides[0].body, that.sides[1].body})
+                if (side.body == body && partOf_[body] >= 0 && parallel < parallelBeds)
+                    return widths_[place] = extentOf(r, axis);
+        const auto box = boxOf(that.polygon());
+        const double common =
+            std::min(box.max()[other], own.max()[other]) - std::max(box.min()[other], own.min()[other]);
+        if (std::abs(box.center()[0] - own.center()[0]) < apart && common > close * own.sizes()[other])
+            beside.emplace_back(box.min()[axis], box.max()[axis]);
+    }
+    double low = own.min()[axis], high = own.max()[axis];
+    std::sort(beside.begin(), beside.end());
+    for (const auto& [from, to] : beside)
+        if (from <= high + gap) high = to >= low ? std::max(high, to) : high;
+    std::sort(beside.begin(), beside.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (const auto& [from, to] : beside)
+        if (to >= low - gap) low = std::min(low, from);
+    return widths_[place] = high - low;
+}
+
+// Parts of a scene that hang together by joints and bodies that can move.
+void Refinement::readParts(const SceneContents& store) {
+    std::vector<int> roots(store.bodies.size());
+    std::iota(roots.begin(), roots.end(), 0);
+    const auto root = [&](int body) {
+        while (roots[body] != body)
+            body = roots[body] = roots[roots[body]];
+        return body;
+    };
+    const auto held = [&](int body) { return (store.bodies.blockedAxes(body) & 7) == 7; };
+    for (const auto& joint : store.joints) {
+        const auto& sides = joint.geom->reference().sides;
+        if (!held(sides[0].body) && !held(sides[1].body)) roots[root(sides[0].body)] = root(sides[1].body);
+    }
+    partOf_.assign(roots.size(), -1);
+    sizes_.clear();
+    for (const auto& joint : store.joints)
+        for (const auto& side : joint.geom->reference().sides) {
+            if (held(side.body)) continue;
+            const int part = partOf_[side.body] = root(side.body);
+            for (const auto& corner : joint.geom->reference().polygon())
+                sizes_[part].extend(corner);
+        }
+    widths_.clear();
+    stiffnessRevision_ = store.stiffnessRevision();
 }
 
 // Whether a point of a joint has reached this part of the limit, or was beyond it already.
@@ -351,7 +449,8 @@ bool Refinement::yields(const JointKind& kind, const Limit& limit, double part, 
 }
 
 // The points that a joint gets which has reached this part of a limit; none if it keeps those that it has.
-PointCounts Refinement::countsIfDue(const JointKind& kind, const Limit& limit, double part, int j) const {
+PointCounts Refinement::countsIfDue(SceneContents& store, const JointKind& kind, const Limit& limit, double part,
+                                    int j) {
     if (kind.shapes->converted[j]) return {};
     const auto now = kind.shapes->refined[j].points;
     auto then = now;
@@ -360,19 +459,14 @@ PointCounts Refinement::countsIfDue(const JointKind& kind, const Limit& limit, d
     };
     const auto lacks = [&](const PointCounts& more) { return more.along > now.along || more.across > now.across; };
     if (lacks(limit.yielded()) && yields(kind, limit, part, j)) add(limit.yielded());
-    if (limit.opened().along && (!limit.row() || lacks(limit.opened()))) add(countsIfOpening(kind, limit, part, j));
+    if (limit.opens() && (!limit.row() || now.along == 0 || lacks(limit.opened())))
+        add(countsIfOpening(store, kind, limit, part, j));
     return then == now ? PointCounts{} : then;
 }
 
 void Refinement::readLimits(const SceneContents& store) {
     limits_.clear();
-    Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
-    for (const auto& joint : store.joints)
-        for (const auto& corner : joint.geom->reference().polygon()) {
-            low = low.cwiseMin(corner);
-            high = high.cwiseMax(corner);
-        }
-    size_ = high - low;
+    if (store.stiffnessRevision() != stiffnessRevision_) readParts(store);
     for (const auto& kind : store.kinds)
         limits_.emplace_back(kind, store.loop->points);
     revision_ = store.revision();
@@ -387,12 +481,12 @@ bool Refinement::look(SceneContents& store) {
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
-        if (!limits_[k].yielded().along && !limits_[k].opened().along) continue;
+        if (!limits_[k].yielded().along && !limits_[k].opens()) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
-            const auto counts = countsIfDue(kind, limits_[k], company, j);
+            const auto counts = countsIfDue(store, kind, limits_[k], company, j);
             if (!counts.along) continue;
             due[{kind.shapes.get(), j}] = counts;
-            any = any || countsIfDue(kind, limits_[k], share, j).along;
+            any = any || countsIfDue(store, kind, limits_[k], share, j).along;
         }
     }
     if (!any) return false;

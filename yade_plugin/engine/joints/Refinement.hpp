@@ -5,6 +5,8 @@
 // the new points take over.
 #pragma once
 #include "SceneContents.hpp"
+#include <Eigen/Geometry>
+#include <map>
 
 namespace masonry {
 
@@ -56,6 +58,8 @@ private:
         const PointCounts& yielded() const { return yielded_; }
         const PointCounts& opened() const { return opened_; }
         bool row() const { return row_; } // whether points stand in a row
+        bool dry() const { return dry_; }
+        bool opens() const { return opens_; } // whether the joint is dry or can become so
         bool cracks() const { return cracks_; }
         bool isReached(double part, double normalStress, double shearStressA, double shearStressB) const;
 
@@ -64,7 +68,7 @@ private:
 
         const LawColumns* columns_;
         PointCounts yielded_, opened_;
-        bool row_ = false;
+        bool row_ = false, dry_ = false, opens_ = false;
         double elasticLimit_ = 0; // in compression [Pa]; 0: none
         bool cracks_ = false;     // whether the limits of its bond count
         // Normal and shear stress [Pa] of the bond up to which the law need not be called.
@@ -72,8 +76,12 @@ private:
     };
     void readLimits(const SceneContents&);
     bool yields(const JointKind&, const Limit&, double part, int joint) const;
-    PointCounts countsIfOpening(const JointKind&, const Limit&, double part, int joint) const;
-    PointCounts countsIfDue(const JointKind&, const Limit&, double part, int joint) const;
+    static bool hasCracked(const JointKind&, int joint);
+    PointCounts countsIfOpening(SceneContents&, const JointKind&, const Limit&, double part, int joint);
+    PointCounts countsIfDue(SceneContents&, const JointKind&, const Limit&, double part, int joint);
+    void readParts(const SceneContents&);
+    double extentOf(const JointReference&, int axis) const;
+    double widthOf(const SceneContents&, const JointReference&, int axis);
 
     // A joint that was refined in this step, with the forces at its points before and after that.
     struct Changed {
@@ -87,10 +95,13 @@ private:
     };
 
     std::vector<Changed> changed_;
-    std::vector<Limit> limits_;        // of the store's kinds
-    long revision_ = -1;               // SceneContents::revision() for which they were read
-    int points_ = 0;                   // JointLoop::points for which they were read
-    Vector3r size_ = Vector3r::Zero(); // of a box around all joints [m]
+    std::vector<Limit> limits_;                               // of the store's kinds
+    long revision_ = -1;                                      // SceneContents::revision() for which they were read
+    int points_ = 0;                                          // JointLoop::points for which they were read
+    std::vector<int> partOf_;                                 // part of each body, -1 if it is held
+    std::map<int, Eigen::AlignedBox3d> sizes_;                // around the joints of each part
+    std::map<std::pair<const Polygon*, int>, double> widths_; // see widthOf(), by the joint and the axis
+    long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these three were read
 };
 
 } // namespace masonry

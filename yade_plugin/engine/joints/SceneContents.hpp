@@ -18,6 +18,7 @@ struct JointLoop {
     double impactWork = 0;       // energy that they have taken so far [J]
     int points = 0;              // along a side of a joint from when it is about to yield; 0: see Refinement
     double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
+    double overestimate = 0;     // of a load by dry joints that have opened at three points [-]
 };
 
 class SceneContents {
