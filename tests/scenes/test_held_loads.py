@@ -271,6 +271,16 @@ def test_a_bound_changes_nothing_of_the_scene(tmp_path):
     assert s.lean(0.6) == COLLAPSED  # no drive holds the stone
 
 
+def test_a_bound_lets_dead_loads_grow_with_what_is_named(tmp_path):
+    scene, stone = stack(tmp_path, preset="bound")
+    scene.load(stone, (0, 0, -1000))
+    scene.settle()
+    scene.grow({stone: (1000, 0, 0)}, dead=True)
+    (bound,) = scene.bounds.entries.values()
+    # it tips about its foot: λ 1000 N 0.5 m = (W + (1 + λ) 1000 N) 0.15 m
+    assert bound["factor"] == approx((WEIGHT + 1000) * 0.15 / 350, rel=1e-3)
+
+
 def test_a_driven_platen_is_a_support_in_limit_analysis(tmp_path):
     s, _ = stack(tmp_path)
     s.platen("top", rotation="held", drive="xz")

@@ -299,4 +299,7 @@ def test_a_move_says_what_inertia_takes_of_its_reactions(tmp_path, rate, much):
     assert share == approx(abs(sum(forces)) / max(map(abs, forces)), rel=0.02)
     said = [note["text"] for note in scene.running.state.notes]
     assert any("of a reaction inertia is" in text for text in said) == much
+    scene.move(right, x=-0.5)
+    *_, moved = (a["value"] for a in scene.answers if a["name"] == "displacement_of_right")
+    assert moved == approx(0.5, abs=0.001)  # in this stage
     scene.finish()
