@@ -396,6 +396,13 @@ def test_records_of_databases(tmp_path, text, kind, parts):
     assert shown == approx(np.transpose([expected] * parts), abs=1e-4 if kind == "GeoNet" else 1e-5)
 
 
+def test_the_vertical_component_of_three_is_the_last(tmp_path):
+    up = cosmos([2 * a for a in WAVE])
+    text = up + cosmos(WAVE, upwards=90) + cosmos(WAVE, upwards=360)
+    values = np.array(readRecord(file(tmp_path, text), None)[0])
+    assert values == approx(np.transpose([WAVE, WAVE, np.multiply(2, WAVE)]), abs=1e-5)
+
+
 @mark.parametrize(
     "text, message",
     [

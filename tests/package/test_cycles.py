@@ -78,3 +78,12 @@ def test_numbers_of_pushes_are_without_what_comes_between_and_behind(last, grown
     columns = {"displacement_mm": [0, 1, 1, 1, 2], "damping_J": [0, 1, 5, 5, 7]}
     data = RunData(run, columns.get)
     assert data.grown("damping_J") == grown and data.collapse == collapse
+
+
+def test_a_push_that_goes_on_from_behind_has_lost_nothing_there():
+    stages = [("push", 0, False), ("push", 3, True)]
+    run = {"stages": [dict(load=["push"], first_row=n, continued=more) for _, n, more in stages]}
+    force = [0, 5, 10, 0, 4, 9.9]
+    moved = [0, 1, 2, 0.5, 1, 2.1]
+    columns = dict(displacement_mm=moved, base_shear_kN=force, top_shear_kN=force)
+    assert RunData(run, columns.get).dropped() == (approx(0.01), None)

@@ -84,6 +84,15 @@ def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
     assert low * 0.99 < tips < high * 1.01
 
 
+def test_a_scene_steps_back_from_a_load_of_a_kind_that_it_had_not(tmp_path):
+    s, stone = atRest(tmp_path)
+    assert s.load(stone, (5000, 0, 0)) == COLLAPSED
+    s.stepBack()
+    assert s.settle() == AT_REST
+    assert -1e3 * last(s, "base_force_z_kN") == approx(WEIGHT, rel=1e-3)
+    assert abs(last(s, "base_force_x_kN")) < 1e-4 * WEIGHT
+
+
 class Fragile:
     """In place of a scene: a structure that carries loads below its capacity, less what it is
     thrown beyond by a step of the load, and stands again only after a step back."""

@@ -237,6 +237,22 @@ def test_a_control_changes_no_force(tmp_path, pushed):
     assert peaks[0] == approx(peaks[1], rel=1e-6)
 
 
+def test_what_has_grown_beside_a_press_keeps_its_line_too(tmp_path):
+    moments = []
+    for grown in (0, 1e5):
+        scene = standing(tmp_path / f"{grown}", PIER, ELASTIC, rate=50)
+        top = scene.platen("top", rotation="free")
+        scene.press(top, 2e5 - grown, riding=False)
+        scene.settle()
+        if grown:
+            scene.grow({top: grown}, over=0.02)
+        scene.push(top, 5)
+        moments.append(scene.curve()["base_M_y_kNm"][-1])
+        letGo()
+        O.reset()
+    assert moments[0] == approx(moments[1], rel=1e-3)
+
+
 def test_a_pattern_is_counted_by_its_mean_on_which_its_force_works(tmp_path):
     scene = standing(tmp_path, PIER, ELASTIC, rate=20)
     scene.watch(0, name="foot")  # which hardly moves
