@@ -4,25 +4,30 @@ ways that must leave the same numbers.
 
 - What is elastic keeps no memory: any commands leave what the loads that act in the end leave if
   they are described, whatever the options, and wherever the structure stands.
-- What slides or cracks does so in a mirror and in another place as here.
+- What opens, slides or cracks does so in a mirror and in another place as here.
 
 ``PAIRS_SEED`` and ``PAIRS`` choose the first structure, and how many there are.
 """
 
 from hosted import *
 
-SEED, COUNT = (int(os.environ.get(name, usual)) for name, usual in (("PAIRS_SEED", 1), ("PAIRS", 300)))
+SEED = int(os.environ.get("PAIRS_SEED", 1))
+COUNT = int(os.environ.get("PAIRS", 300))
 ALIKE = 2e-3  # error of a number over the largest of its unit
+CHANCE = 0.1  # the same of what slides, where round-off decides how far
+#: Numbers below these are round-off, by their units.
+LEAST = {"m": 1e-6, "-": 1e-5, "mm": 1e-3, "mrad": 1e-2}
+GROUPS = 20  # of pairs, each a test
 DEPTH = 0.2  # of all blocks [m]
 ELASTIC = materials.Masonry(
     MasonryMat(young=2e10, poisson=0.2, density=2000),
     {"bed": MasonryJoint(elastic=True, normalStiffness=1e10, shearStiffness=5e9)},
 )
 YIELDING = {
-    "dry": materials.dry(friction=0.6, normalStiffness=1e10, density=2000),
+    "dry": materials.dry(friction=3.0, normalStiffness=1e10, density=2000),
     "bonded": materials.calciumSilicate(),
 }
-#: Opposite corners of blocks in the x-z plane [m]; no two sides are alike.
+#: Of blocks x and z of two opposite corners [m].
 SHAPES = {
     "stack": [(0, 0, 0.3, 0.2), (0, 0.2, 0.3, 0.4)],
     "shifted": [(0, 0, 0.3, 0.15), (0.05, 0.15, 0.3, 0.3), (0, 0.3, 0.3, 0.4)],
@@ -94,11 +99,13 @@ class Drawn:
 
     def level(self):
         """A horizontal direction."""
-        return self.random.choice([(1, 0, 0), (-1, 0, 0)] + [(0, 1, 0), (0, -1, 0)] * (not self.plane))
+        return self.random.choice(
+            [(1, 0, 0), (-1, 0, 0)] + [(0, 1, 0), (0, -1, 0)] * (not self.plane)
+        )
 
     def vector(self, most):
         one = [self.number(-most, most) for _ in range(3)]
-        return np.array([one[0], one[1] * (not self.plane), one[2] - most])
+        return np.array([one[0] / 2, one[1] / 2 * (not self.plane), one[2] - most])
 
     def say(self, name, act):
         self.said.append((name, act))
@@ -119,10 +126,10 @@ class Drawn:
     def grow(self):
         force, stress = self.vector(200), self.number(1e3, 1e4)
         if self.top == "handle" or self.random.random() < 0.5:
-            self.say(f"grow {force}", lambda s, t, p: s.grow({t: p.along(force)}, over=0.1))
+            self.say(f"grow {force}", lambda s, t, p: s.grow({t: p.along(force)}, over=0.02))
             self.grown = self.grown + force
         else:
-            self.say(f"grow {stress}", lambda s, t, p: s.grow({t: stress / 2}, most=2, over=0.1))
+            self.say(f"grow {stress}", lambda s, t, p: s.grow({t: stress / 2}, most=2, over=0.02))
             self.grown = self.grown - [0, 0, stress * self.area]
 
     def face(self):
@@ -134,7 +141,7 @@ class Drawn:
 
     def growFace(self):
         towards, pressure = self.level(), self.number(100, 900)
-        more = lambda s, t, p: s.grow({}, pressure=pressure, towards=p.along(towards), over=0.1)
+        more = lambda s, t, p: s.grow({}, pressure=pressure, towards=p.along(towards), over=0.02)
         self.say(f"grow pressure {pressure} {towards}", more)
         key = "grown", towards
         self.faces[key] = self.faces.get(key, 0.0) + pressure
@@ -146,7 +153,7 @@ class Drawn:
 
     def accelerate(self):
         towards, factor = self.level(), self.number(0.01, 0.05)
-        more = lambda s, t, p: s.accelerate(factor, p.along(towards), rate=factor / 0.1)
+        more = lambda s, t, p: s.accelerate(factor, p.along(towards), rate=50 * factor)
         self.say(f"accelerate {factor} {towards}", more)
         self.gravity = self.gravity + G * factor * np.array(towards)
 
@@ -154,42 +161,39 @@ class Drawn:
         if "press" in self.loads:  # which has the weight of its platen in it
             return self.lean()
         towards, degrees = self.level(), self.number(0.5, 3)
-        turn = lambda s, t, p: s.tilt(degrees, p.along(towards), rate=10 * degrees)
+        turn = lambda s, t, p: s.tilt(degrees, p.along(towards), rate=50 * degrees)
         self.say(f"tilt {degrees} {towards}", turn)
         axis = Vector3(*np.cross((0, 0, -1), towards).tolist())
         self.gravity = np.array(Quaternion(axis, math.radians(degrees)) * Vector3(*self.gravity))
         return None
 
     def push(self):
-        towards, far = self.level(), self.number(0.005, 0.02 if self.elastic else 0.3)
-        left = self.vector(100) if self.random.random() < 0.5 else None
-        parts, back = self.random.random() < 0.3, self.random.random() < 0.3
-        axis = "x" if towards[0] else "y"
+        """A push or a cycle, which lets go. What yields is left in the drive: when that lets go,
+        round-off decides where it sticks."""
+        towards, loops = self.level(), self.random.random() < 0.4
+        far = self.number(0.02, 0.03 if self.elastic else 0.2)
+        left = self.vector(100) if self.elastic and self.random.random() < 0.5 else None
+        parts, back = (self.elastic and self.random.random() < 0.4 for _ in range(2))
 
         def act(s, t, p):
             how = dict(direction=p.along(towards), rate=20)
-            s.push(t, far / 2 if parts else far, **how)
-            if parts:
+            if loops:
+                s.cycle(t, [far], **how)
+            else:
+                s.push(t, far / 2 if parts else far, **how)
+            if parts and not loops:
                 s.push(t, far, continued=True, **how)
             if back:
                 s.push(t, far, direction=p.along(np.multiply(-1, towards)), rate=20)
+            if not self.elastic:
+                return DONE
             force = None if left is None else p.along(left)
-            s.release(t, p.axes(axis), force=force)
+            s.release(t, p.axes("x" if towards[0] else "y"), force=force)
             return s.settle()
 
-        self.say(f"push {far} {towards} {parts} {back} {left}", act)
+        self.say(f"push {far} {towards} {loops} {parts} {back} {left}", act)
         if left is not None:
             self.loads["dead"] = self.loads.get("dead", 0) + left
-
-    def cycle(self):
-        towards, far = self.level(), self.number(0.02, 0.03 if self.elastic else 0.1)
-
-        def act(s, t, p):
-            s.cycle(t, [far], direction=p.along(towards), rate=20)
-            s.release(t, p.axes("x" if towards[0] else "y"))
-            return s.settle()
-
-        self.say(f"cycle {far} {towards}", act)
 
     def hold(self):
         axes = self.random.choice(["z", "zY"] if self.top == "free" else ["z"])
@@ -231,12 +235,16 @@ class Drawn:
         self.load()
         self.described, self.said = self.said, []
 
-    KINDS = load, press, grow, face, growFace, lean, accelerate, tilt, push, cycle, hold, passing, move
+    KINDS = load, press, grow, face, growFace, lean, accelerate, tilt, hold, passing, move, push
 
     def draw(self):
         if self.random.random() < 0.3:
             self.describe()
-        for kind in self.random.choices(self.KINDS, k=self.random.choice([2, 2, 3])):
+        kinds = self.random.choices(self.KINDS, k=self.random.choice([2, 2, 3]))
+        if not self.elastic:  # a push is the last
+            kinds.sort(key=lambda kind: kind is Drawn.push)
+            kinds = kinds[: [*kinds, Drawn.push].index(Drawn.push) + 1]
+        for kind in kinds:
             kind(self)
         return self
 
@@ -267,10 +275,10 @@ class Drawn:
         scene.watch(0, name="first")
         return scene, top
 
-    def carriedOut(self, folder, place, *words):
+    def carriedOut(self, folder, place):
         """All that is said, in a place: the numbers at the end, and how the commands ended."""
-        functors = self.functors and place is self.place
-        scene, top = self.built(folder, place, *words, functors=functors)
+        functors = self.functors and (not self.elastic or place is self.place)
+        scene, top = self.built(folder, place, *self.options.split(), functors=functors)
         for _, act in self.described:
             act(scene, top, place)
         ends = [scene.settle(), *(act(scene, top, place) for _, act in self.said)]
@@ -304,15 +312,21 @@ class Drawn:
 
 
 def rest(scene):
-    """Let the last motion die away."""
-    if scene.args.density_scaling == 1:
-        scene.run(0.1, damping=0.8)
-    for _ in range(3 * (scene.args.density_scaling != 1)):
-        scene.settle()
+    """Let the last motion die away, with a row at the end."""
+    scene.model.scheme.dampByOptions()
+    for _ in range(50):
+        scene.running.advance(200)
+        if max(scene.model.supports.unrest()) < 1e-7:
+            break
+    scene.running.record()
+    scene.running.flush()
 
 
-PATH = re.compile(r"(time_s|displacement_mm|base_shear.*|top_shear.*|vertical_mm|rotation_mrad|load_factor|"
- r"masonry_displacement_mm|balance_error|external_J|gravity_J|refining_J|kinetic_J|damping_J|impacts_J|dissipated.*|largest_crack_mm)")
+#: Columns of what led there.
+PATH = re.compile(
+    "time_s|displacement_mm|(base|top)_shear_kN|vertical_mm|rotation_mrad|load_factor|masonry.*"
+    "|balance_error|(external|gravity|refining|kinetic|damping|impacts|dissipated.*)_J|largest_.*"
+).fullmatch
 
 
 def numbers(scene, place, plane):
@@ -337,55 +351,45 @@ def numbers(scene, place, plane):
     return found
 
 
-def differences(one, other, skip, within=ALIKE):
-    """Names of numbers that are not alike, with both."""
-    units = {}
-    for name in {*one, *other}:
-        for side in (one, other):
-            unit = name.rpartition("_")[2]
-            units[unit] = max(units.get(unit, 0.0), float(np.abs(side.get(name, 0)).max()))
+def differences(one, other, skip, within):
+    """Pairs of numbers that are not alike, with their names."""
+    largest = dict(LEAST)  # of each unit
+    unit = lambda name: name.rpartition("_")[2]
+    for name, value in [*one.items(), *other.items()]:
+        largest[unit(name)] = max(largest.get(unit(name), 0.0), np.abs(value).max())
+    largest["kNm"] = max(largest["kNm"], 0.1 * largest["kN"])
     for name in sorted({*one, *other}):
         a, b = one.get(name, 0.0), other.get(name, 0.0)
-        if not skip(name) and not np.abs(np.subtract(a, b)).max() <= within * units[name.rpartition("_")[2]]:
+        if not skip(name) and not np.abs(np.subtract(a, b)).max() <= within * largest[unit(name)]:
             yield name, a, b
 
 
-def remembered(folder, seed):
+def remembered(folder, drawn):
     """What is not alike of an elastic structure and of the same with its last loads alone."""
-    drawn = Drawn(seed, True).draw()
-    words = drawn.options.split()
-    found, ends = drawn.carriedOut(f"{folder}/{seed}", drawn.place, *words)
+    found, ends = drawn.carriedOut(folder / "said", drawn.place)
+    assert not {COLLAPSED, MOVING} & {*ends}, ends
     letGo()
     O.reset()
-    expected = drawn.asDescribed(f"{folder}/{seed} described")
-    return drawn, [*differences(found, expected, PATH.fullmatch)] + [e for e in ends if e == COLLAPSED]
+    return differences(found, drawn.asDescribed(folder / "described"), PATH, ALIKE)
 
 
-def mirrored(folder, seed):
+def mirrored(folder, drawn):
     """What is not alike of a structure that yields and of its image."""
-    drawn = Drawn(seed, False).draw()
-    words, both = drawn.options.split(), []
-    for n, place in enumerate((drawn.place, Place())):
-        both.append(drawn.carriedOut(f"{folder}/{seed} {n}", place, *words))
-        letGo()
-        O.reset()
-    (one, ends), (other, otherEnds) = both
-    wrong = [*differences(one, other, re.compile("time_s|balance_error").fullmatch, 0.05)]
-    return drawn, wrong + [ends, otherEnds] * (ends != otherEnds)
+    one, ends = drawn.carriedOut(folder / "there", drawn.place)
+    letGo()
+    O.reset()
+    other, otherEnds = drawn.carriedOut(folder / "here", Place())
+    assert ends == otherEnds
+    return differences(one, other, re.compile("time_s|balance_error").fullmatch, CHANCE)
 
 
-@mark.parametrize("group", range(15))
-@mark.parametrize("check, first", [(remembered, 0), (mirrored, 1), (remembered, 2)])
-def test_pairs_of_commands(tmp_path, check, first, group):
-    problems = []
-    for seed in range(SEED + 3 * group + first, SEED + COUNT, 45):
-        try:
-            drawn, wrong = check(tmp_path, seed)
-        except (Exception, SystemExit) as error:
-            if os.environ.get("PAIRS_RAISE"): raise
-            drawn, wrong = Drawn(seed, check is remembered).draw(), [repr(error)]
+@mark.parametrize("group", range(GROUPS))
+def test_what_is_said_in_two_ways_leaves_the_same(tmp_path, group):
+    for seed in range(SEED + group, SEED + COUNT, GROUPS):
+        check = mirrored if seed % 3 == 0 else remembered
+        drawn = Drawn(seed, check is remembered).draw()
+        print(drawn.words())
+        wrong = [*check(tmp_path / f"{seed}", drawn)]
+        assert not wrong, drawn.words()
         letGo()
         O.reset()
-        if wrong:
-            problems.append((drawn.words(), wrong))
-    assert not problems, "\n".join(map(str, problems))
