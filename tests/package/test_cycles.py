@@ -87,3 +87,9 @@ def test_a_push_that_goes_on_from_behind_has_lost_nothing_there():
     moved = [0, 1, 2, 0.5, 1, 2.1]
     columns = dict(displacement_mm=moved, base_shear_kN=force, top_shear_kN=force)
     assert RunData(run, columns.get).dropped() == (approx(0.01), None)
+
+
+def test_a_push_carries_what_both_ends_carry_at_once():
+    run = {"stages": [dict(load=["push"], first_row=0)]}
+    columns = dict(displacement_mm=[0, 1, 2], base_shear_kN=[0, 10, 2], top_shear_kN=[0, 3, 8])
+    assert RunData(run, columns.get).peakForce() == 3

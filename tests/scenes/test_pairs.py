@@ -340,6 +340,8 @@ def numbers(scene, place, plane):
             vector["xyz".index(axis)] = value
         else:
             found[head] = value
+    if not scene.model.loading.followed:  # along x, wherever the structure stands
+        del found["base_shear_kN"]
     for name, value in found.items():
         if isinstance(value, list):
             found[name] = place.back(value, re.search("_M_|_moment_", name))
