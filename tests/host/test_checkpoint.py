@@ -5,6 +5,7 @@ scene."""
 import struct
 
 from hosted import *
+from masonry._masonry import loadScene, saveScene
 from test_joint_loop import CASES, panel, state
 
 
@@ -80,6 +81,17 @@ def test_what_a_script_changes_in_engines_is_kept(tmp_path):
     assert O.forces.permT(1) == Vector3(0.3, 0.1, 0.2)
     assert not O.bodies[0].state.isDamped
     assert (O.forces.f(1, True) - force).norm() < 1e-12 * force.norm()
+
+
+def test_what_a_stage_changes_in_the_integrator_of_the_host_is_kept():
+    panel(True)
+    integrator = O.engines[-1]
+    assert type(integrator) is NewtonIntegrator
+    integrator.damping, integrator.gravity = 0.25, (1, 2, 3)
+    state = saveScene("")
+    integrator.damping, integrator.gravity = 0, (0, 0, -1)
+    loadScene(state)
+    assert (integrator.damping, integrator.gravity) == (0.25, Vector3(1, 2, 3))
 
 
 def test_a_checkpoint_of_another_scene_is_refused_and_changes_nothing(tmp_path):

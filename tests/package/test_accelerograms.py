@@ -181,6 +181,7 @@ def test_what_a_script_says_must_agree_with_the_file(tmp_path):
         ("# unit: g\n40\n1.5\n2.5\n", r"line 2: it begins with the whole number 40, and 2 samples"),
         ("0.5,1\n0,2\n", r"line 2: 1 numbers|not evenly|must be after"),
         ("0,5\n1,2\n", r"line 1: is 0,5 one number or two\?"),
+        ("0,5\n1,0\n", r"line 1: is 0,5 one number or two\?"),
         ("t,x\n0,1\n0.01,2\n0.02,O\n", r"line 4: 'O' is not a number"),
         ("1 2 3\n4 5 6\n", r"line 1: 3 numbers, and the lines must have one or two"),
         ("acc [mm/s2]\n1\n2\n", r"line 1: unit 'mm/s2' must be one of"),
@@ -250,13 +251,13 @@ def commas(lines, mark=";"):
         ("# units: g\n" + "\n".join(TIMED), G),
         ("time_s,acceleration_ms2\n" + "\n".join(TIMED).replace(" ", ","), 1),
         ("acc [g],time [s]\n" + "\n".join(",".join(line.split()[::-1]) for line in TIMED), G),
-        ("\ufeff% measured\r\n" + "\r\n".join(TIMED), 1),
+        ("\ufeff# every: 0.01 s\r\n% measured\r\n" + "\r\n".join(COLUMN), 1),
         ("\n".join(TIMED).replace(" ", "\t"), 1),
         (commas(TIMED), 1),
         (commas(TIMED, " "), 1),
         ("# every: 0.01 s\n" + commas(["a"] + COLUMN), 1),
         ("# every: 0.01 s\n" + "\n".join(COLUMN), 1),
-        ("# every: 0.01 s\n" + commas(COLUMN), 1),
+        ("// every: 0.01 s\n" + commas(COLUMN), 1),
         ("64 0.01\n" + "\n".join(COLUMN), 1),
         ("# every: 0.01 s\n# unit: gal\n64\n" + "\n".join(COLUMN), 0.01),
         ("\n".join(f"{n / 256:.4f} {a}" for n, a in enumerate(WAVE)), 1),
@@ -376,6 +377,7 @@ def csmip(values, unit="cm/sec2", channel="Up"):
     [
         (knet(WAVE), "K-NET", 1),
         (cosmos(WAVE), "COSMOS", 1),
+        (cosmos([10 * v / G for v in WAVE], unit="mg (11)"), "COSMOS", 1),
         (cosmos(WAVE) + cosmos(WAVE, quantity="velocity", unit="cm/sec (05)"), "COSMOS", 1),
         (cosmos(WAVE) + cosmos(WAVE, upwards=90) + cosmos(WAVE, upwards=360), "COSMOS", 3),
         (csmip(WAVE), "CSMIP", 1),
@@ -392,6 +394,13 @@ def test_records_of_databases(tmp_path, text, kind, parts):
     expected = np.subtract(WAVE, offset)
     shown = np.array(values).reshape(64, -1)
     assert shown == approx(np.transpose([expected] * parts), abs=1e-4 if kind == "GeoNet" else 1e-5)
+
+
+def test_the_vertical_component_of_three_is_the_last(tmp_path):
+    up = cosmos([2 * a for a in WAVE])
+    text = up + cosmos(WAVE, upwards=90) + cosmos(WAVE, upwards=360)
+    values = np.array(readRecord(file(tmp_path, text), None)[0])
+    assert values == approx(np.transpose([WAVE, WAVE, np.multiply(2, WAVE)]), abs=1e-5)
 
 
 @mark.parametrize(

@@ -7,6 +7,8 @@ sys.path.insert(0, os.path.join(ROOT, "validation", "cyclic"))
 import figures  # noqa: E402
 import walls  # noqa: E402
 
+from masonry.numbers.run_data import RunData  # noqa: E402
+
 STIFFNESS, STRENGTH = 10.0, 20.0  # [kN/mm], [kN]
 MONOTONIC = np.array([[0.0, 2.0, 50.0], [0.0, 20.0, 20.0]])
 
@@ -61,3 +63,33 @@ def test_figures_are_drawn(tmp_path):
 def test_a_figure_of_no_path_is_refused(tmp_path):
     with raises(FileNotFoundError, match="no path of joint.py"):
         figures.draw(tmp_path, tmp_path / "joint.png")
+
+
+@mark.parametrize("last, grown, collapse", [("push", 3, 3), ("lean", 1, None)])
+def test_numbers_of_pushes_are_without_what_comes_between_and_behind(last, grown, collapse):
+    stages = [("push", 0, False), (None, 2, False), (last, 3, True)]
+    run = {
+        "collapsed": True,
+        "stages": [
+            {"load": load and [load, "top"], "first_row": row, "continued": continued}
+            for load, row, continued in stages
+        ],
+    }
+    columns = {"displacement_mm": [0, 1, 1, 1, 2], "damping_J": [0, 1, 5, 5, 7]}
+    data = RunData(run, columns.get)
+    assert data.grown("damping_J") == grown and data.collapse == collapse
+
+
+def test_a_push_that_goes_on_from_behind_has_lost_nothing_there():
+    stages = [("push", 0, False), ("push", 3, True)]
+    run = {"stages": [dict(load=["push"], first_row=n, continued=more) for _, n, more in stages]}
+    force = [0, 5, 10, 0, 4, 9.9]
+    moved = [0, 1, 2, 0.5, 1, 2.1]
+    columns = dict(displacement_mm=moved, base_shear_kN=force, top_shear_kN=force)
+    assert RunData(run, columns.get).dropped() == (approx(0.01), None)
+
+
+def test_a_push_carries_what_both_ends_carry_at_once():
+    run = {"stages": [dict(load=["push"], first_row=0)]}
+    columns = dict(displacement_mm=[0, 1, 2], base_shear_kN=[0, 10, 2], top_shear_kN=[0, 3, 8])
+    assert RunData(run, columns.get).peakForce() == 3

@@ -84,6 +84,15 @@ def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
     assert low * 0.99 < tips < high * 1.01
 
 
+def test_a_scene_steps_back_from_a_load_of_a_kind_that_it_had_not(tmp_path):
+    s, stone = atRest(tmp_path)
+    assert s.load(stone, (5000, 0, 0)) == COLLAPSED
+    s.stepBack()
+    assert s.settle() == AT_REST
+    assert -1e3 * last(s, "base_force_z_kN") == approx(WEIGHT, rel=1e-3)
+    assert abs(last(s, "base_force_x_kN")) < 1e-4 * WEIGHT
+
+
 class Fragile:
     """In place of a scene: a structure that carries loads below its capacity, less what it is
     thrown beyond by a step of the load, and stands again only after a step back."""
@@ -269,6 +278,16 @@ def test_a_bound_changes_nothing_of_the_scene(tmp_path):
     entry = s.bound(stone, direction=(1, 0, 0))
     assert entry["factor"] == approx(0.7e-3 * WEIGHT / 3, rel=0.01)
     assert s.lean(0.6) == COLLAPSED  # no drive holds the stone
+
+
+def test_a_bound_lets_dead_loads_grow_with_what_is_named(tmp_path):
+    scene, stone = stack(tmp_path, preset="bound")
+    scene.load(stone, (0, 0, -1000))
+    scene.settle()
+    scene.grow({stone: (1000, 0, 0)}, dead=True)
+    (bound,) = scene.bounds.entries.values()
+    # it tips about its foot: λ 1000 N 0.5 m = (W + (1 + λ) 1000 N) 0.15 m
+    assert bound["factor"] == approx((WEIGHT + 1000) * 0.15 / 350, rel=1e-3)
 
 
 def test_a_driven_platen_is_a_support_in_limit_analysis(tmp_path):

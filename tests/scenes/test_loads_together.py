@@ -186,6 +186,8 @@ def test_a_record_acts_beside_accelerations_that_stay(tmp_path):
     acceleration = G * np.array(scene.results.column("acceleration_x_g")[first:])
     assert acceleration.min() == approx(turned[0] - 1, abs=0.05)
     assert acceleration[-1] == approx(turned[0])
+    scene.shake([0, 1], 0.01, unit="m/s²")  # does not end at 0
+    assert gravity() == approx(list(turned))
     scene.run(0.01)
     assert gravity() == approx(list(turned))
     assert scene.lean(0) == AT_REST  # in place of all of them

@@ -237,6 +237,22 @@ def test_a_control_changes_no_force(tmp_path, pushed):
     assert peaks[0] == approx(peaks[1], rel=1e-6)
 
 
+def test_what_has_grown_beside_a_press_keeps_its_line_too(tmp_path):
+    moments = []
+    for grown in (0, 1e5):
+        scene = standing(tmp_path / f"{grown}", PIER, ELASTIC, rate=50)
+        top = scene.platen("top", rotation="free")
+        scene.press(top, 2e5 - grown, riding=False)
+        scene.settle()
+        if grown:
+            scene.grow({top: grown}, over=0.02)
+        scene.push(top, 5)
+        moments.append(scene.curve()["base_M_y_kNm"][-1])
+        letGo()
+        O.reset()
+    assert moments[0] == approx(moments[1], rel=1e-3)
+
+
 def test_a_pattern_is_counted_by_its_mean_on_which_its_force_works(tmp_path):
     scene = standing(tmp_path, PIER, ELASTIC, rate=20)
     scene.watch(0, name="foot")  # which hardly moves
@@ -299,4 +315,7 @@ def test_a_move_says_what_inertia_takes_of_its_reactions(tmp_path, rate, much):
     assert share == approx(abs(sum(forces)) / max(map(abs, forces)), rel=0.02)
     said = [note["text"] for note in scene.running.state.notes]
     assert any("of a reaction inertia is" in text for text in said) == much
+    scene.move(right, x=-0.5)
+    *_, moved = (a["value"] for a in scene.answers if a["name"] == "displacement_of_right")
+    assert moved == approx(0.5, abs=0.001)  # in this stage
     scene.finish()

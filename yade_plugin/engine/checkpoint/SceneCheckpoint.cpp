@@ -4,6 +4,7 @@
 #include "common/Text.hpp"
 #include "engine/bodies/Blocks.hpp"
 #include "engine/bodies/Changes.hpp"
+#include "engine/bodies/ClassRole.hpp"
 #include "engine/bodies/StepLock.hpp"
 #include "engine/joints/Refinement.hpp"
 #include "engine/store/SceneStore.hpp"
@@ -118,6 +119,11 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
             to.owner = "engine " + std::to_string(++number) + " " + engine->getClassName() + ".";
             to("dead", engine->dead);
             own->transfer(to);
+        } else if (roleOf(*engine) == ClassRole::Integrator) {
+            auto& host = static_cast<yade::NewtonIntegrator&>(*engine); // stages change it, too
+            to.owner = "engine " + engine->getClassName() + ".";
+            to("damping", host.damping);
+            to("gravity", host.gravity);
         }
     for (const auto& engine : scene.engines)
         if (auto* zones = dynamic_cast<Zones*>(engine.get()))
