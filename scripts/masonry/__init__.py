@@ -170,14 +170,12 @@ def __dir__():
 
 
 def _start():
-    """Start YADE if it does not run, and register the plugin. Raises ImportError."""
     importlib.import_module("yade")
     if _OF_PLUGIN[0] not in globals():
         _register()
 
 
 def _register():
-    """Register the plugin in the YADE of this process. Raises ImportError."""
     from . import memory
     from .terminal import say
 

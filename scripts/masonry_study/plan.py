@@ -156,7 +156,6 @@ class Study:
                 self.correlation[one, two] = float(value)
 
     def _uncorrelated(self, name):
-        """Why a name can have no correlation, or nothing."""
         if name not in self.vary:
             return f"{name} does not vary"
         what = self.vary[name]
@@ -175,7 +174,6 @@ class Study:
     # -- what follows ------------------------------------------------------------------------------
 
     def describe(self) -> dict[str, Any]:
-        """The study as JSON has it: two studies with the same description have the same rows."""
         return {
             "scene": self.scene,
             "options": self.options,
@@ -199,8 +197,7 @@ class Study:
                 raise Refused(f"study: {self.runs} rows, there must be at most {MAX_ROWS}")
 
     def rows(self) -> list[dict[str, Any]]:
-        """The values of every row: a list of dicts, with the options that all have. Raises
-        Refused."""
+        """The values of every row, with the options that all have. Raises Refused."""
         if not self.ida:
             return self._drawn(self.design, self.runs)
         shaken, rows = self.ida.rows(), []
@@ -211,7 +208,6 @@ class Study:
         return rows
 
     def _drawn(self, design, count):
-        """What is drawn for some rows, with the options that all have: a list of dicts."""
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
         drawn = {n: w for n, w in self.vary.items() if n not in fields}
         rows = designs.values(design, count, self.seed, drawn, self.correlation)
@@ -224,7 +220,6 @@ class Study:
         return rows
 
     def table(self) -> str:
-        """The table of the rows, as text: see :mod:`masonry.run.batch`."""
         rows = self.rows()
         lines = [["description", *rows[0]]]
         for number, row in enumerate(rows, 1):
@@ -252,7 +247,6 @@ class Study:
 
 
 def _unfit(what, names):
-    """Why names cannot vary by that, sentences."""
     isField, several = isinstance(what, Field), len(names) > 1
     properties = all("." in name for name in names)
     if isField and not properties:
@@ -269,7 +263,6 @@ def namesOf(column: str) -> list[str]:
 
 
 def _wrongOption(name, value):
-    """What is wrong with an option or a property."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
         yield f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
     elif name in batch.OWN:

@@ -31,12 +31,12 @@ class Column:
 
     @property
     def head(self):
-        """The name with its unit, as in the first line of curve.csv."""
+        """As in the first line of curve.csv."""
         return self.name if self.unit in (None, "-") else f"{self.name}_{self.unit}"
 
     @property
     def explanation(self):
-        """The meaning with its unit, as in run.json."""
+        """As in run.json."""
         return self.meaning if self.unit is None else f"{self.meaning} [{self.unit}]"
 
 

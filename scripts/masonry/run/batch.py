@@ -64,7 +64,7 @@ def readTable(path):
 
 
 def value(text):
-    """The value of a text of a table; what is no value of Python is the text itself."""
+    """The value of a text of a table, or the text itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -89,14 +89,6 @@ def optionWords(row):
     return words
 
 
-def isColumn(name):
-    """Whether a column of a study can have this name: an option, or properties of joints with one
-    value or field. ``!EXEC`` and the like are commands of yade-batch."""
-    names = name.removeprefix(FIELD).split("+")
-    fits = lambda one: re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", one, re.ASCII)
-    return all(map(fits, names)) and not OWN.intersection(names)
-
-
 def place(text):
     """Path of the table and number of the line of :data:`VARIABLE`. Raises Refused."""
     path, _, line = text.rpartition(":")
@@ -114,18 +106,16 @@ def beside(path):
 
 
 def named(number):
-    """The name of a row of a study, from its number, from 1."""
     return f"{number:04d}"
 
 
 def folder(path, row, line):
-    """The folder of the results of a row."""
     name = nameOf(row, f"line_{line}")
     return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
 
 
 def nameOf(row, default):
-    """The name of a row, which is that of a folder; ``default`` if it has no description."""
+    """The name of a row, which is that of a folder."""
     return row.get("description", default).replace("/", "_").strip("'\"")
 
 
@@ -140,10 +130,7 @@ def ended(directory):
 
 def present():
     """The words of the command line of the row that ``yade-batch`` runs in this process, or None.
-
-    :raises Done: if the row was run to its end
-    :raises Refused: if there is no such row
-    """
+    Raises Refused, or Done if the row was run to its end."""
     text = os.environ.get(VARIABLE)
     if not text:
         return None

@@ -23,7 +23,6 @@ Field = Annotated[
 
 
 def doubtPress(stress: float, name: str) -> None:
-    """Say that a stress looks as if it were in MPa."""
     if 0 < stress < 1e3:
         say(f"warning: {name}: {stress:g} Pa: is it in Pa, not MPa?")
 
@@ -121,7 +120,6 @@ def pressure(
 
 
 def _sumOf(forces):
-    """The sum of forces on faces (x, y, z) [N]."""
     x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
     return x, y, z
 

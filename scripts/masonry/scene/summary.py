@@ -8,7 +8,6 @@ import statistics
 
 from ..bricks import Bricks, summary
 from ..materials import loadingBlock
-from ..model.loading import Pattern
 from ..terminal import say
 from ..units import GRAVITY
 
@@ -101,7 +100,6 @@ def _freedom(freedom):
 
 
 def noteCourse(description):
-    """Note that the joints were made for other courses."""
     course = description.materials.course
     heights = {block.high[2] - block.low[2] for block in description.bricks}
     if course and not any(abs(h - course) < 0.01 * course for h in heights):
