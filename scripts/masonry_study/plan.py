@@ -23,8 +23,7 @@ class Study:
     """A scene, what varies in it, and how many runs there are.
 
     :param scene: name of a scene that stands beside the study's file, in the present folder or in a
-        folder ``scripts`` of either or above it, or the path of a scene of your own, which
-        ``masonry.Scene`` makes
+        folder ``scripts`` of either or above it, or the path of a scene of your own
     :param options: options of the scene by their names, with underscores for dashes, the same in
         all rows; also properties of joints, ``"bed.friction": 0.5``
     :param runs: how many rows; of a grid None, or the number of its points
@@ -39,12 +38,11 @@ class Study:
         drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]; of a
         tuple of properties its key, or one of them
-    :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from
-        the study's file on, or patterns of files such as ``"records/*.AT2"``, or triples of files,
-        of three components that act at once
-    :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all
-        records are scaled
-    :param scales: in place of levels: growing factors on the records as they are [-]
+    :param records: of an ``"ida"``, like those below: files as in
+        :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or patterns such as
+        ``"records/*.AT2"``, or triples of files, of three components that act at once
+    :param levels: growing values of the measure of intensity [g] to which all records are scaled;
+        or ``scales``: growing factors on the records as they are [-]
     :param measure: of intensity: ``"PGA"``, the peak ground acceleration (None means that, too), or
         :func:`masonry_study.Sa`, a spectral acceleration
     :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``;

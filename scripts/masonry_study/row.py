@@ -7,9 +7,8 @@ falls. A row that was run is left out, one that was stopped goes on from its che
 that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. The exit
 status is 0 if all rows are ended.
 
-The scene is a program, and the folder of a study is data: that study.json names a scene is no
-reason to run it. So the user names it, unless it is in the folder itself, and it must be the file
-with which the study began.
+The scene is a program, and the folder of a study is data. So the user names the scene, unless it is
+in the folder itself, and it must be the file with which the study began.
 """
 
 import argparse

@@ -40,7 +40,7 @@ class Model:
       frames that were read, from 0; ``count``: of all frames of the run
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
     - ``bodies`` (B): ids of the blocks; ``centres`` (B, 3): means of their points [m]; ``looks``
-      (B): PLATEN (also supports and the like), BRICK or GROUND; ``rigid`` (B): whether it is rigid
+      (B): PLATEN (also supports and the like), BRICK or GROUND; ``rigid`` (B)
     - ``framed`` (N): whether a point is in the picture: none of the ground on which blocks fall
     - ``triangles`` (n, 3): surfaces of the blocks, counter-clockwise from outside, and ``edges``
       (n, 2): their edges, both as numbers of points

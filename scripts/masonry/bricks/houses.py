@@ -51,12 +51,12 @@ class House(Bricks):
     the next storey.
 
     :param length: along x, measured outside [m]; ``width``: along y. Both are whole units
-    :param storeys: :class:`Storey` records, from below
+    :param storeys: from below
     :param unit: length, thickness and height of a unit, joints included [m]
     :param thickness: of the floors [m]
     :param eccentricity: of the mass of each floor over length and width [-], 0.05 in EN 1998-1: a
         part of the mass stands as a strip on the floor, along the wall
-    :ivar heights: for each storey the height of the section through its piers [m]
+    :ivar heights: of the section through the piers of each storey [m]
     :ivar piers: for each storey a dict from the part to (wall, from where, to where along it [m])
     """
 

@@ -281,8 +281,7 @@ class Masonry:
             change alike. The tensile strength must be at most cohesion over friction everywhere
         :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the
             property [-]; :mod:`masonry.materials.fields` has random ones
-        :param step: values are rounded to steps of this ratio, so that many joints share one and
-            cost no more than uniform ones [-]
+        :param step: values are rounded to steps of this ratio, so that many joints share one [-]
         """
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:

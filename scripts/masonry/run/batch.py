@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs
-no YADE.
+"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. No YADE is needed.
 
 ``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the
 scene by their names, with underscores for dashes, and properties of joints. Values are written as
@@ -12,8 +11,8 @@ in Python, without blanks::
 - an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the
   row before
 - ``record``: a path that is not absolute begins at the folder of the table
-- ``JOINT.PROPERTY``: as ``--set``; those that have one value are joined by ``+``
-- ``field:JOINT.PROPERTY``: as ``--field``; those that vary alike are joined by ``+``
+- ``JOINT.PROPERTY``: as ``--set``, and ``field:JOINT.PROPERTY``: as ``--field``; those that have
+  one value, or vary alike, are joined by ``+``
 - ``description``: of the results, in the folder ``rows/DESCRIPTION`` beside the table
 
 A row that was run to its end is not run again. One that was stopped goes on from its checkpoint,

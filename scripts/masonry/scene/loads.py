@@ -133,12 +133,12 @@ def wind(
     and stays.
 
     Loaded are the faces of rigid bricks within 45 degrees of the direction, also behind others,
-    each along its normal, where no joint covers it. Suction is a negative pressure.
+    each along its normal, where no joint covers it.
 
-    :param pressure: [Pa]
+    :param pressure: [Pa]; negative: suction
     :param towards: direction in which the wind blows, horizontal
     :param part: name of a part of the bricks; None: all
-    :returns: the sum of the forces [N], as :meth:`pressure` does
+    :returns: the sum of the forces [N]
     """
     towards = vector(towards, "wind: direction")
     doubtWind(pressure, "wind")

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Files of ground accelerations as databases give them.
 
-- **PEER NGA**: some lines of header, of which one has the number of samples and the time between
-  them, ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit; then the
-  samples, any number of them a line.
+- **PEER NGA**: a line of the header has the number of samples and the time between them, ``NPTS=
+  4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit; then the samples, any number
+  of them a line.
 - **ESM** and ITACA (DYNA): 64 lines of header, each a key, a colon and a value, among them
   ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS`` (``cm/s^2``) and ``DATA_TYPE``. One sample a line.
-- **K-NET** and **KiK-net**: 17 lines of header with ``Sampling Freq(Hz)``, ``Duration Time(s)``
-  and ``Scale Factor``, by which the counts that follow are Gal; their mean is the offset of the
+- **K-NET** and **KiK-net**: 17 lines of header with ``Sampling Freq(Hz)``, ``Duration Time(s)`` and
+  ``Scale Factor``, by which the counts that follow are Gal; their mean is the offset of the
   instrument and is taken away.
 - **COSMOS** V1 and V2 (format 1.20): for each series a text, 100 whole numbers, 100 real numbers,
   of which number 62 is the time between samples [ms], comments, and the samples below a line with
-  their number, quantity, unit (code in brackets) and format. Velocities and displacements are
-  passed over. The older form of **CSMIP** says ``points of accel data equally spaced at`` instead.
-- **GeoNet** V1A and V2A: three components one after the other, each of 16 lines of text, 4 lines
-  of 10 whole numbers, 6 lines of 10 real numbers, and accelerations, velocities and displacements
-  in mm and s, 10 of 8 characters a line.
+  their number, quantity, unit (code in brackets) and format. The older form of **CSMIP** says
+  ``points of accel data equally spaced at`` instead.
+- **GeoNet** V1A and V2A: three components one after the other, each of 16 lines of text, 4 lines of
+  10 whole numbers, 6 lines of 10 real numbers, and accelerations, velocities and displacements in
+  mm and s, 10 of 8 characters a line.
 
-A file of three components gives them as two horizontal ones in its order, then the vertical one.
+Velocities and displacements are passed over. Three components are two horizontal ones in the order
+of the file, then the vertical one.
 """
 
 import re
