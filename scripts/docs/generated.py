@@ -212,8 +212,7 @@ def modules():
         path = importlib.import_module(package).__path__
         for one in pkgutil.walk_packages(path, package + "."):
             name = one.name.rpartition(".")[2]
-            # ParaView alone imports its macro, in its own Python
-            if not name.startswith("_") and name != "paraview_macro":
+            if not name.startswith("_"):
                 found.append(one.name)
     return found
 

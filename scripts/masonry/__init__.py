@@ -25,16 +25,15 @@ A scene of one's own is bricks, materials and stages::
 
 Beside it lie four packages, the wings (:mod:`masonry.wings`):
 
-- :mod:`masonry_view`: figures, report, the structure in 3-D, ParaView
+- :mod:`masonry_view`: figures, report, the structure in 3-D
 - :mod:`masonry_limit`: limit analysis, the bound beside every run
 - :mod:`masonry_capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry_study`: one scene, run many times with values that vary
 
 ``masonry.numbers``, ``masonry.bricks``, and the wings but for ``masonry_limit`` work without YADE.
-
 Import it from a script of ``yade``, of plain Python or from a notebook: YADE starts when something
-is first used that needs it (:mod:`masonry.host`). The classes of the plugin (``masonry.classes``)
-are also in ``yade.wrapper``; ``help(masonry.MasonryJoint)`` and so on is their manual.
+needs it (:mod:`masonry.host`). The classes of the plugin (``masonry.classes``) are also in
+``yade.wrapper``; ``help(masonry.MasonryJoint)`` and so on is their manual.
 """
 
 import sys
@@ -170,14 +169,12 @@ def __dir__():
 
 
 def _start():
-    """Start YADE if it does not run, and register the plugin. Raises ImportError."""
     importlib.import_module("yade")
     if _OF_PLUGIN[0] not in globals():
         _register()
 
 
 def _register():
-    """Register the plugin in the YADE of this process. Raises ImportError."""
     from . import memory
     from .terminal import say
 

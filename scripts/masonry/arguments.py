@@ -10,8 +10,7 @@ A hint is ``Annotated`` with a validator: a function of a value and of its conte
 argument of the command (the scene or its description). It returns the value as the command uses it,
 or raises ValueError, whose text completes "NAME ": "-1 Pa must be at least 0". Validators of
 numbers have their ``unit``, and ``of``, the type of Python; those of some texts have ``choices``.
-Texts, switches and functions need none; hints of other types without one are not checked. All
-problems of a call are in one error, and an unknown argument is answered with the nearest name.
+Texts, switches and functions need none; hints of other types without one are not checked.
 """
 
 import ast
@@ -60,7 +59,7 @@ def nearest(name, names):
 
 
 class ByName(dict):
-    """A dict by names. A name that it does not have raises Refused with those that it has."""
+    """A dict by names, which raises Refused with those that it has."""
 
     def __init__(self, what: str) -> None:
         super().__init__()
@@ -92,7 +91,7 @@ def asFloat(value):
 
 
 def require(value, condition, expectation):
-    """Return a value if a condition holds, else raise ValueError with what is expected."""
+    """Return a value if a condition holds, else raise ValueError."""
     if not condition:
         raise ValueError(f"{shown(value)} must be {expectation}")
     return value
@@ -197,9 +196,8 @@ def oneOf(*choices):
 
 
 def isA(cls, what=None):
-    """Validator of an object of a class.
+    """Validator of an object of a class or of one of several.
 
-    :param cls: or a tuple of classes
     :param what: a name for it; None: the names of the classes
     """
     classes = cls if isinstance(cls, tuple) else (cls,)
@@ -230,10 +228,8 @@ def byName(validator, *needed):
 
 
 def axes(letters, none=False):
-    """Validator of some axes, as ``"xz"``: letters without repeats, or a list of them.
-
-    :param none: whether there may be none
-    """
+    """Validator of some axes, as ``"xz"``: letters without repeats, or a list of them; ``none``: or
+    of none."""
 
     def take(value, context=None):
         fine = isinstance(value, (str, list, tuple, set, frozenset))
@@ -379,12 +375,12 @@ def typeOf(hint: Any) -> Any:
 
 
 def validated(act: F) -> F:
-    """Let a function, or a class, check its arguments by the validators of its hints.
+    """Let a function, or a class, check its arguments by the validators of its hints. All problems
+    of a call are in one error, :class:`Refused`, and an unknown argument is answered with the
+    nearest name.
 
     A function gets ``validators``, which returns these by name, and ``checked``, a function of its
     positional and its named arguments that gives both as validators return them.
-
-    :raises Refused: from the function, with all problems
     """
     if isinstance(act, type):
         setattr(act, "__init__", validated(vars(act)["__init__"]))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is computed beside a run (limit analysis, frames, figures, report, accuracy) never ends it:
-an unexpected error there is a note of the run, with its traceback in ``errors.log``. This module
-needs no YADE."""
+an unexpected error is a note of the run, with its traceback in ``errors.log``. No YADE is
+needed."""
 
 import contextlib
 import os
@@ -16,10 +16,10 @@ EXPECTED = (Refused, Interrupted, Unwritable, Collapsed, MemoryError)
 
 
 class Auxiliary:
-    """A ``with`` block beside a run: an unexpected error ends the block, and not the run.
+    """A ``with`` block that an unexpected error ends, without ending the run.
 
     :param what: is computed, in a few words
-    :param fail: function that keeps the note and the traceback of an error, both as text
+    :param fail: function of the note and the traceback of an error, both as text
     """
 
     def __init__(self, what, fail):

@@ -35,8 +35,7 @@ class Task:
     """Work in a copy of this process, which sees the scene as it is at that moment, takes no steps
     and ends without any clean-up. Where the system gives no process the work is done at once.
 
-    :param work: a function without arguments whose result can be iterated, as a generator
-    :param parts: number of its results, each for :meth:`result`
+    :param work: a function without arguments that gives the ``parts`` results in turn
     """
 
     def __init__(self, work: Callable[[], Iterable[Any]], parts: int = 1) -> None:
@@ -97,7 +96,6 @@ class Task:
 
 
 def _carryOut(work, parts, writes):
-    """Do the work in the copy of the process, and end it."""
     try:
         os.setsid()  # Ctrl-C is for the run
         _endWithParent(signal.SIGKILL)
@@ -128,10 +126,9 @@ def _endWithParent(number):
 
 class Program(subprocess.Popen[bytes]):
     """A program, which gets SIGTERM when this process ends or is killed. Ctrl-C is for this process
-    alone, which ends the program in order.
+    alone, which ends the program in order. Raises OSError.
 
     :param log: file that takes what it says
-    :raises OSError: if it cannot be started
     """
 
     def __init__(

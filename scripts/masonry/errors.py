@@ -17,7 +17,7 @@ IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
 
 
 def checkPlane(description, along, name):
-    """Raise Refused for a vector with a part along y in a scene in the x-z plane."""
+    """Refuse a vector with a part along y in a scene in the x-z plane."""
     if description.plane and along[1]:
         raise Refused(f"{name}: {IN_PLANE}")
 

@@ -16,11 +16,8 @@ MAX_NAMES = 5  # of links in a message
 
 
 def check(*folders):
-    """Refuse folders that hold symbolic links, all at once. A missing folder holds none; a folder
-    itself may be a link.
-
-    :raises OSError: if a folder cannot be listed
-    """
+    """Refuse folders that hold symbolic links, all at once; a folder itself may be a link, or
+    missing. Raises OSError if one cannot be listed."""
     problems = []
     for folder in folders:
         names = []
@@ -49,9 +46,8 @@ def inside(path, flags):
 @contextlib.contextmanager
 def replaced(path, mode="w", **settings):
     """A file to write, ``path + ".new"``, which replaces ``path`` when it is whole and on the disk,
-    and is removed after an error.
+    and is removed after an error. Parameters as in Python's ``open``.
 
-    :param mode: and ``settings``: as in Python's ``open``
     :raises OSError: if it cannot be written, or if ``path`` is a symbolic link
     """
     path = os.fspath(path)

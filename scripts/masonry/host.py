@@ -5,7 +5,7 @@ The program ``yade`` puts the folder of YADE's modules on ``sys.path``; ``/usr/b
 not. After ``import masonry`` this module does it as soon as anything imports ``yade``, so what
 reads results stays as quick as without YADE. YADE starts without ports, without a change of
 ``sys.argv``, with one thread unless ``OMP_NUM_THREADS`` says another number, and without its lines
-on the terminal. The classes of the plugin are registered at once.
+on the terminal.
 """
 
 import contextlib
@@ -66,10 +66,9 @@ class Finder:
 
 
 class Loader(importlib.machinery.SourceFileLoader):
-    """Imports YADE quietly, with one thread unless the user wants more."""
-
     def exec_module(self, module):
-        """Run the module. Raises ImportError if this Python lacks what YADE needs."""
+        """Run the module quietly, with one thread unless the user wants more. Raises ImportError if
+        this Python lacks what YADE needs."""
         printed, asked = io.StringIO(), THREADS in os.environ
         os.environ.setdefault(THREADS, "1")  # OpenMP reads it when it is loaded
         quietly = contextlib.redirect_stdout(printed)
@@ -143,7 +142,6 @@ def folders():
 
 
 def _program():
-    """The text of the program ``yade``, or an empty one."""
     with contextlib.suppress(OSError, UnicodeDecodeError, TypeError):
         with open(shutil.which(YADE), encoding="utf-8") as file:
             return file.read(1 << 20)

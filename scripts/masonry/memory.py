@@ -17,7 +17,7 @@ LARGE = 128  # rows of matrices whose product takes the buffer
 
 
 def reserve():
-    """Let numerical libraries take their buffer now and not in the middle of a run. Raises
+    """Let numerical libraries take their buffer now, not in the middle of a run. Raises
     MemoryError."""
     try:
         mmap.mmap(-1, BUFFER).close()
@@ -31,8 +31,8 @@ def reserve():
 
 @contextlib.contextmanager
 def withoutCollector() -> Iterator[None]:
-    """Stop Python's search for unused circles of objects during a block, or in a function that this
-    decorates. In a block that makes many thousands of records it takes half of the time."""
+    """Stop Python's search for unused circles of objects during a block, or a function that this
+    decorates. Where many thousands of records are made it takes half of the time."""
     enabled = gc.isenabled()
     gc.disable()
     try:

@@ -49,9 +49,8 @@ class RunFailed(Exception):
 def ended(name, status, folder, error):
     """The error with which a run ends a cell.
 
-    :param name: of the scene
     :param status: exit status that a script would have
-    :param folder: of its results, or None
+    :param folder: of the results, or None
     :param error: what ended it, or None
     """
     if status == 130:

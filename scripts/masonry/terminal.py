@@ -31,9 +31,8 @@ _listeners = []  # of the present run
 
 def say(text, stream=None, noted=True):
     """Print a text, as :func:`escapeControls` writes it. A terminal that is gone or a log that is
-    full is no reason to stop a run.
-
-    The run that listens writes notes and warnings to run.json, also those from before it began.
+    full is no reason to stop a run, which writes notes and warnings to run.json, also those from
+    before it began.
 
     :param noted: False: a note that is kept elsewhere
     """
@@ -46,12 +45,11 @@ def say(text, stream=None, noted=True):
 
 
 def listen(listener: Callable[[str], None]) -> None:
-    """Give a function, in place of any other, all notes from now on, and first the pending ones."""
+    """Give a function, in place of any other, all notes, the pending ones first."""
     _listeners[:] = [listener]
     while _pending:
         listener(_pending.popleft())
 
 
 def stopListening(listener: Callable[[str], None]) -> None:
-    """Give a function no more notes."""
     _listeners[:] = [one for one in _listeners if one != listener]

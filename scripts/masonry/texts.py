@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Text files of other programs: encoding, line ends, comments, heads, columns and numbers.
-
-Every reader of such a file begins here, so that a peculiarity is known to all of them:
+"""Text files of other programs: encoding, line ends, comments, heads, columns and numbers. Every
+reader of such a file begins here:
 
 - UTF-8 and UTF-16 with a byte order mark, UTF-8 without one, else Latin-1;
 - lines end with a line feed, a carriage return or both, and are counted as an editor counts them;
@@ -17,6 +16,7 @@ import re
 import stat
 import struct
 from dataclasses import dataclass, field
+from typing import Any, Callable
 
 from .arguments import FilePath, shown
 from .errors import Refused
@@ -42,7 +42,7 @@ MISREAD = (
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a table: its number as an editor counts it, and its cells."""
+    """A line of a table: its number and its cells."""
 
     line: int
     cells: list[str]
@@ -113,15 +113,18 @@ class TextFile:
             return content.decode("latin-1")
 
     def refused(self, text: str, line: int | None = None) -> Refused:
-        """The error of this file, or of one of its lines."""
         return Refused(f"{self.path}{f', line {line}' if line else ''}: {text}")
+
+    def read(self, function: Callable[[str], Any], text: str, line: int) -> Any:
+        """What a function makes of a text of a line. Its ValueError is one of this line."""
+        try:
+            return function(text)
+        except ValueError as error:
+            raise self.refused(str(error), line) from None
 
     def number(self, word: str, line: int) -> float:
         """The finite number that a word of a line stands for. Raises Refused."""
-        try:
-            return finite(word)
-        except ValueError as error:
-            raise self.refused(str(error), line) from None
+        return self.read(finite, word, line)
 
     def numbers(self, text: str, line: int) -> list[float]:
         """The finite numbers of a line in columns that blanks part, or that touch."""
@@ -133,10 +136,9 @@ class TextFile:
         return [self.number(word, line) for word in found]
 
     def table(self, columns: int | None = None) -> Table:
-        """The text as a table.
+        """The text as a table. Raises Refused if its commas are ambiguous.
 
         :param columns: how many it must have, by which the meaning of commas is known; None: any
-        :raises Refused: if its commas are ambiguous
         """
         found, body = Table(), []
         for line, text in enumerate(self.lines, 1):

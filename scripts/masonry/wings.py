@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The packages beside the core, its wings. The core imports none of them: what it needs of one is
-named in :data:`WINGS` and loaded when it is used. A wing imports of the core what :data:`PUBLIC`
-names."""
+loaded when it is used."""
 
 import importlib
 import os
@@ -48,8 +47,8 @@ class Absent:
 
 
 def folderOf(wing):
-    """The ``__path__`` of a wing beside the core that runs, which may be another than that where
-    the wing was found. Raises NotInstalled."""
+    """The ``__path__`` of a wing beside the core that runs, which may be another than where the
+    wing was found. Raises NotInstalled."""
     folder = os.path.join(FOLDER, wing)
     if not os.path.isdir(folder):
         raise NotInstalled(f"{wing} is not installed in {FOLDER}")

@@ -68,7 +68,7 @@ def load(path):
 
 
 def tell(folder):
-    """Gather, and say what is there. Returns the exit status: 0 if all rows are ended."""
+    """Gather, and say what is there. Returns the exit status."""
     folder.check()
     counts = gather(folder)
     summary = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))

@@ -10,7 +10,7 @@ of rows fills what the draws keep of the ranges. A run with the means of the dra
 the surrogate, and added to its rows while it differs.
 
 A few accurate runs say how far the scene as it is run is off: their mean difference is added, and
-its scatter is another error. scripts/STUDIES.md is the manual.
+its scatter is another error.
 """
 
 from __future__ import annotations
@@ -190,8 +190,8 @@ class Calibration:
         :param place: folder of the results; the same call goes on with them
         :param near: folder from which scenes and files are looked for
         :param jobs: runs at a time
-        :raises Refused: if something is wrong with a scene or a measured file, or too few rows have
-            what is compared
+        :raises Refused: if a scene or a measured file is wrong, or too few rows have what is
+            compared
         """
         for one in self.specimens:
             one.read(near)
@@ -218,7 +218,6 @@ class Calibration:
         return posterior(model, self.values, self.errors, self.seed)
 
     def _fitted(self):
-        """The surrogate of the last round, and draws of the properties."""
         low, high = self.low, self.high
         x, y = np.empty((0, len(low))), np.empty((0, len(self.values)))
         for turn in range(self.rounds):
@@ -257,14 +256,13 @@ class Calibration:
         return model, sample, run
 
     def _best(self, name, sample, options=()):
-        """What a run with the means of the draws says, as :meth:`_rows` does."""
         means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
         study = lambda s: Study(s.scene, {**s.options, **dict(options)}, vary=means, design="grid")
         return self._rows(name, study, 0)
 
     def _rows(self, name, studyOf, least):
-        """Run a study of every specimen: the unknown properties of the rows, of which there must be
-        at least ``least``, and what all specimens say of them."""
+        """Run a study of every specimen: the unknown properties of the rows, at least ``least``,
+        and what all specimens say of them."""
         found = []
         for number, specimen in enumerate(self.specimens, 1):
             study, place = studyOf(specimen), f"specimen{number}_{name}"
@@ -292,8 +290,7 @@ class Surrogate:
     """What a scene says as a function of the unknown properties within their ranges: kriging with a
     linear trend.
 
-    :param x: of every row the unknown properties
-    :param y: of every row what it says
+    :param x: of every row the unknown properties; ``y``: what it says
     :param low: ends of the ranges, and ``high``
     :param checks: how many rows at the end are checks, whose error is the least that is taken
     """
@@ -352,8 +349,8 @@ def _kriging(u, column):
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:
-    """Draws of the unknown properties, with the probability that measured values, with these
-    standard deviations, give them: a line each."""
+    """Draws of the unknown properties, a line each, with the probability that measured values, with
+    these standard deviations, give them."""
     ot, size, spread = needed("openturns"), len(model.low), np.hypot(errors, model.errors)
     misfit = lambda u: -0.5 * (((model.unit(u) - values) / spread) ** 2).sum(axis=1)
     density = ot.PythonFunction(size, 1, lambda u: [misfit(np.array([u]))[0]])
@@ -436,13 +433,11 @@ class Found:
 
     @property
     def properties(self) -> list[dict[str, Any]]:
-        """Of every property ``name``, ``value``, ends of its interval, and ``spread``."""
         columns = self.sample.mean(axis=0), *self.intervals, self.spread
         rows = zip(self.calibration.names, *(c.tolist() for c in columns))
         return [dict(zip("name value low high spread".split(), row)) for row in rows]
 
     def describe(self) -> dict[str, Any]:
-        """As JSON has it."""
         return {
             "properties": self.properties,
             "correlation": self.correlation.tolist(),
@@ -450,7 +445,6 @@ class Found:
         }
 
     def lines(self) -> Iterator[str]:
-        """What is printed."""
         of = self.calibration
         wide = max(map(len, of.names))
         heads = f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}"

@@ -4,11 +4,10 @@ that a limit needs.
 
 The demand of a row is the amount of one of its measures, for example the largest displacement of a
 point. Where the structure falls the demand is infinite, and it stays so at all higher levels, which
-are not run. Quantiles over the records at a level count infinite demands like others: where more
-than half of the records have fallen, the median is infinite. Between two levels of a record the
-demand is interpolated, from zero at zero on; between the highest level at which the structure stood
-and that at which it fell it counts as infinite, which is on the safe side and matters only where
-records have other levels than each other.
+are not run. Quantiles over the records at a level count infinite demands like others. Between two
+levels of a record the demand is interpolated, from zero at zero on; between the highest level at
+which the structure stood and that at which it fell it counts as infinite, which is on the safe side
+and matters only where records have other levels than each other.
 
 Rows that failed or are missing are left out, and at a level with fewer than three known records
 there is no quantile.
@@ -64,16 +63,13 @@ class Demands:
 
     @property
     def levels(self):
-        """The intensities of all rows, each once, growing."""
         return sorted({i for intensities, _ in self.rows for i in intensities})
 
     def at(self, intensity):
-        """The demand of every record at an intensity, NaN where it is not known."""
         return np.array([_between(*rows, intensity) for rows in self.rows])
 
     def quantiles(self, intensity, shares=QUANTILES):
-        """Quantiles of the demand over the records at an intensity; NaN where fewer than three
-        records are known."""
+        """Quantiles of the demand over the records at an intensity, or NaN."""
         values = self.at(intensity)
         values = np.sort(values[~np.isnan(values)])
         known = len(values) >= fragility.MIN_RECORDS
@@ -122,7 +118,6 @@ def _usual(record):
 
 
 def _between(intensities, demands, at):
-    """The demand of a record at an intensity; the module says how."""
     upTo = int(np.searchsorted(intensities, at)) + 1
     if math.inf in demands[:upTo]:  # it falls at a lower intensity, or at the next one
         return math.inf

@@ -48,10 +48,8 @@ def points(design, count, dimension, seed):
 
 
 def _factorize(names, correlation):
-    """The Cholesky factor of the normal copula of numbers with these rank correlations.
-
-    :raises Refused: if no numbers have all these correlations at once
-    """
+    """The Cholesky factor of the normal copula of numbers with these rank correlations. Raises
+    Refused."""
     ot = needed("openturns")
     matrix = ot.CorrelationMatrix(len(names))
     for (one, two), value in correlation.items():
@@ -65,10 +63,7 @@ def _factorize(names, correlation):
 
 
 def values(design, count, seed, vary, correlation):
-    """What every row has: a list of dicts of name -> value, without fields.
-
-    :param vary: dict of name -> Distribution or Choice
-    """
+    """What every row has, without fields; ``vary``: dict of name -> Distribution or Choice."""
     if design == "grid":
         rows = itertools.product(*(c.values for c in vary.values()))
         return [dict(zip(vary, row)) for row in rows]

@@ -71,11 +71,11 @@ class Fit:
 
 
 def fit(low: Numbers, high: Numbers) -> Fit:
-    """The fragility with the largest likelihood.
+    """The fragility with the largest likelihood. Raises Refused, with the reason, if the records
+    cannot give it.
 
     :param low: of every record the highest level below the first that reaches the limit; 0: none
     :param high: of every record the first level that reaches it; infinite: none
-    :raises Refused: if the records cannot give it, with the reason
     """
     low, high = np.asarray(low, float), np.asarray(high, float)
     _check(low, high)
@@ -122,13 +122,13 @@ def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: flo
     """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine
     manual, "Fragility Models". Its mean and standard deviation are those of the intensity, not of
     its logarithm. OpenQuake takes intensities above maxIML down to it, so maxIML is where nearly
-    all reach the limit, and the description says which levels were run.
+    all reach the limit, and the description says which levels were run. Raises Refused if OpenQuake
+    does not know the measure.
 
     :param fits: by the taxonomy of the assets
     :param measure: of intensity, as a column of study.csv
     :param state: name of the limit state; ``what``: it in words
     :param highest: level that was run [g]
-    :raises Refused: if OpenQuake does not know the measure
     """
     period = re.fullmatch(r"Sa_([\d.]+)s_g", measure)
     if not (period or measure == "PGA_g"):
@@ -181,7 +181,6 @@ def _check(low, high):
 
 
 def _logOfDifference(low, high):
-    """ln(Φ(high) - Φ(low)), also where both are far out."""
     flip = low > 0
     low, high = np.where(flip, -high, low), np.where(flip, -low, high)
     top = special.log_ndtr(high)

@@ -40,7 +40,6 @@ class Folder:
         return os.path.join(self.path, *names)
 
     def row(self, number):
-        """The folder of the results of a row."""
         return self.of(batch.ROWS, batch.named(number))
 
     def checkpoint(self, number):
@@ -58,7 +57,7 @@ class Folder:
             raise Refused(f"cannot read {error.filename}: {error.strerror}") from None
 
     def description(self):
-        """study.json. Raises Refused if there is none, or if it is no description of a study."""
+        """study.json. Raises Refused."""
         try:
             record = json.loads(readWhole(self.of(STUDY)))
             record["script"], record["study"]["runs"], record["study"]["vary"]
@@ -84,11 +83,9 @@ class Folder:
 
     @functools.cached_property
     def chains(self):
-        """:class:`masonry_study.incremental.Chains` of the study."""
         return Chains(self.description()["study"])
 
     def hasFallen(self, number):
-        """Whether a row has ended with a structure that fell when it was shaken."""
         run = None if number in self._fell else batch.ended(self.row(number))
         if run is not None:
             self._fell[number] = fell(run)
@@ -99,7 +96,6 @@ class Folder:
         return any(map(self.hasFallen, self.chains.lower(number)))
 
     def isDone(self, number):
-        """Whether there is nothing to run for a row."""
         return self.isEnded(number) or self.isAboveCollapse(number)
 
     def status(self, number):
@@ -136,8 +132,7 @@ _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
 
 def reason(log):
-    """What a scene said at last before it failed, of the text of its log: sentences, or an empty
-    list."""
+    """What a scene said at last before it failed, by the text of its log: sentences."""
     lines = [line.strip() for line in _USAGE.split(log, 1)[-1].splitlines()]
     lines = [line for line in lines if line and not line.startswith(_CHATTER)]
     if "Traceback (most recent call last):" in log:
@@ -161,8 +156,8 @@ def rowsOf(folder):
 
 
 def gather(folder):
-    """Write study.csv and times.csv. Returns how many rows have each status. Refuses what
-    :func:`rowsOf` refuses."""
+    """Write study.csv and times.csv. Returns how many rows have each status. Raises as
+    :func:`rowsOf`."""
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], collections.Counter()
     strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
@@ -196,14 +191,11 @@ def gather(folder):
 
 
 def _answerName(answer):
-    """The column of an answer: the stage and its number in the run, if a stage found it, what it
-    is, and its unit."""
     own = not answer["number"]
     name = answer["name"] if own else f"{answer['stage']}_{answer['number']}_{answer['name']}"
     return name if answer["unit"] == "-" else f"{name}_{answer['unit']}"
 
 
 def _varied(name, text):
-    """What a row has of something that varies, for study.csv; of a field its seed."""
     value, isField = batch.value(text), name.startswith(batch.FIELD)
     return re.search(r"seed=(\d+)", value)[1] if isField else value

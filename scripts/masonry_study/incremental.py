@@ -2,9 +2,9 @@
 """Incremental dynamic analysis: a scene is shaken by records that grow in strength. Here is what is
 run; what is found is in :mod:`masonry_study.demands`.
 
-Rows are in the order of the records, those of a record with growing levels. A record is not run
-beyond the level at which the structure falls: rows above it are ``above collapse``. The rows that
-are done tell which these are, so it does not matter who ran which row, nor in which order.
+Rows are in the order of the records, those of a record with growing levels. Those above the level
+at which the structure falls are not run but ``above collapse``. The rows that are done tell which
+these are, so it does not matter who ran which row, nor in which order.
 """
 
 import glob
@@ -44,7 +44,6 @@ class Measure:
 
     @property
     def name(self) -> str:
-        """As a column of study.csv."""
         if self.period is None:
             return "PGA_g"
         ratio = "" if self.damping == DAMPING else f"_{100 * self.damping:g}%"
@@ -52,7 +51,7 @@ class Measure:
 
     def of(self, values: Sequence[Any], every: float) -> float:
         """The measure of a record [g]; of three components the geometric mean of both horizontal
-        ones. Parameters as in :class:`Motion`."""
+        ones."""
         parts = accelerograms.components(values).tolist()
         if len(parts) == 3:
             return math.sqrt(self.of(parts[0], every) * self.of(parts[1], every))
@@ -87,21 +86,17 @@ class Motion:
 
     @property
     def text(self) -> str:
-        """As the folder of the study has it; every digit of the samples is in it."""
         return accelerograms.written(self.values, self.every, self.name)
 
     @property
     def entry(self) -> dict[str, Any]:
-        """As study.json has it."""
         digest = hashlib.sha256(self.text.encode()).hexdigest()
         return {"name": self.name, "sha256": digest, "intensity": self.intensity}
 
 
 class Incremental:
-    """The records of a study, and how strong they are.
-
-    Parameters are those of :class:`masonry_study.plan.Study`; problems are appended to a list.
-    """
+    """The records of a study, and how strong they are. Parameters are those of
+    :class:`masonry_study.plan.Study`; problems are appended to a list."""
 
     def __init__(
         self,
@@ -152,7 +147,6 @@ class Incremental:
 
     @property
     def steps(self) -> int:
-        """How many levels there are."""
         return len(self.levels if self.scales is None else self.scales)
 
     def read(self, near: FilePath) -> list[Motion]:
@@ -216,7 +210,6 @@ class Incremental:
         return [(m, level / m.intensity) for m in motions for level in self.levels]
 
     def describe(self) -> dict[str, Any]:
-        """As study.json has it."""
         return {
             "records": [motion.entry for motion in self.read("")],
             "measure": self.measure.name,
@@ -225,7 +218,6 @@ class Incremental:
         }
 
     def doubts(self) -> list[str]:
-        """Sentences on records that drift."""
         return [
             f"note: the record {motion.name} drifts: {doubt}"
             for motion in self.read("")
@@ -245,15 +237,14 @@ class Chains:
         self.each = len(self.plan["levels"] or self.plan["scales"]) if self.plan else 1
 
     def record(self, number: int) -> int:
-        """The number of the record of a row, from 0."""
         return (number - 1) // self.each
 
     def lower(self, number: int) -> range:
-        """The rows of the same record below a row, the lowest first."""
+        """The rows of the same record below a row, the lowest first, as ``higher`` those above
+        it."""
         return range(self.record(number) * self.each + 1, number)
 
     def higher(self, number: int) -> range:
-        """Those above it, the lowest first."""
         return range(number + 1, (self.record(number) + 1) * self.each + 1)
 
     def lowest(self, numbers: Iterable[int]) -> set[int]:

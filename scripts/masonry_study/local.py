@@ -46,7 +46,6 @@ class Local:
             raise Interrupted() from None
 
     def _begin(self, number):
-        """Start the program of a row. Raises Unwritable if the disk is nearly full."""
         free = shutil.disk_usage(self.folder.path).free
         if free < FREE_SPACE * self.jobs:
             raise Unwritable(
@@ -59,8 +58,7 @@ class Local:
             return background.Program(command, log, dict(os.environ), self.folder.path)
 
     def _ended(self, number, program):
-        """See how far the program of a row has come, which may have gone on with the levels
-        above."""
+        """See how far the program of a row has come, perhaps with the levels above."""
         rows = self.open.intersection([number, *self.folder.chains.higher(number)])
         self._look(rows)
         killed = not 0 <= program.returncode < 128

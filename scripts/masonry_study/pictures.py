@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of a study, for print.
-
-Each function takes numbers and writes one PNG file. ``inputs`` is a dict of the name of a varied
-property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
-"""
+"""Pictures of a study, for print. Each function writes one PNG file. ``inputs`` is a dict of the
+name of a varied property -> its values, one a row, and ``label`` says what the output is, with its
+unit in brackets."""
 
 import contextlib
 import itertools
@@ -36,13 +34,9 @@ def _picture(path, width, height):
 
 
 def scatter(path, inputs, output, label):
-    """Every varied property and the output against each other, with histograms on the diagonal.
-
-    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a
-    thousand and a million.
-
-    :raises Refused: if there is no property
-    """
+    """Every varied property and the output against each other, with histograms on the diagonal. The
+    number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand
+    and a million. Raises Refused if there is no property."""
     from matplotlib.ticker import EngFormatter
 
     if not inputs:
@@ -159,7 +153,7 @@ def histogram(path, values, label, modes=None):
     """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted
     lognormal density.
 
-    :param modes: a word for every value, which divides the bars into colours; None divides none
+    :param modes: a word for every value, which divides the bars into colours
     """
     words = np.asarray(modes or [f"{len(values)} rows"] * len(values))
     named = sorted(set(words), key=lambda word: (-np.sum(words == word), word))
@@ -294,12 +288,8 @@ def fitted(path, fit, counts, xLabel, yLabel):
 
 
 def fan(path, curves, xLabel, yLabel):
-    """All curves over each other, with their median and the band that 90 % of them are in: of those
-    that go on, up to where half have ended.
-
-    :param curves: list of (x, y), of which the first is made increasing by leaving out what goes
-        back
-    """
+    """All curves (x, y) over each other, with their median and the band that 90 % of them are in:
+    of those that go on, up to where half have ended."""
     from matplotlib.collections import LineCollection
 
     curves = [increasing(*curve) for curve in curves]
@@ -366,5 +356,4 @@ def _shown(name):
 
 
 def _broken(name):
-    """A name with line breaks where it can have them."""
     return _shown(name).replace(": ", ":\n").replace(", ", ",\n").replace(" [", "\n[")

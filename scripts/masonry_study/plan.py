@@ -23,8 +23,7 @@ class Study:
     """A scene, what varies in it, and how many runs there are.
 
     :param scene: name of a scene that stands beside the study's file, in the present folder or in a
-        folder ``scripts`` of either or above it, or the path of a scene of your own, which
-        ``masonry.Scene`` makes
+        folder ``scripts`` of either or above it, or the path of a scene of your own
     :param options: options of the scene by their names, with underscores for dashes, the same in
         all rows; also properties of joints, ``"bed.friction": 0.5``
     :param runs: how many rows; of a grid None, or the number of its points
@@ -39,12 +38,11 @@ class Study:
         drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]; of a
         tuple of properties its key, or one of them
-    :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from
-        the study's file on, or patterns of files such as ``"records/*.AT2"``, or triples of files,
-        of three components that act at once
-    :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all
-        records are scaled
-    :param scales: in place of levels: growing factors on the records as they are [-]
+    :param records: of an ``"ida"``, like those below: files as in
+        :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or patterns such as
+        ``"records/*.AT2"``, or triples of files, of three components that act at once
+    :param levels: growing values of the measure of intensity [g] to which all records are scaled;
+        or ``scales``: growing factors on the records as they are [-]
     :param measure: of intensity: ``"PGA"``, the peak ground acceleration (None means that, too), or
         :func:`masonry_study.Sa`, a spectral acceleration
     :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``;
@@ -156,7 +154,6 @@ class Study:
                 self.correlation[one, two] = float(value)
 
     def _uncorrelated(self, name):
-        """Why a name can have no correlation, or nothing."""
         if name not in self.vary:
             return f"{name} does not vary"
         what = self.vary[name]
@@ -175,7 +172,6 @@ class Study:
     # -- what follows ------------------------------------------------------------------------------
 
     def describe(self) -> dict[str, Any]:
-        """The study as JSON has it: two studies with the same description have the same rows."""
         return {
             "scene": self.scene,
             "options": self.options,
@@ -199,8 +195,7 @@ class Study:
                 raise Refused(f"study: {self.runs} rows, there must be at most {MAX_ROWS}")
 
     def rows(self) -> list[dict[str, Any]]:
-        """The values of every row: a list of dicts, with the options that all have. Raises
-        Refused."""
+        """The values of every row, with the options that all have. Raises Refused."""
         if not self.ida:
             return self._drawn(self.design, self.runs)
         shaken, rows = self.ida.rows(), []
@@ -211,7 +206,6 @@ class Study:
         return rows
 
     def _drawn(self, design, count):
-        """What is drawn for some rows, with the options that all have: a list of dicts."""
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
         drawn = {n: w for n, w in self.vary.items() if n not in fields}
         rows = designs.values(design, count, self.seed, drawn, self.correlation)
@@ -224,7 +218,6 @@ class Study:
         return rows
 
     def table(self) -> str:
-        """The table of the rows, as text: see :mod:`masonry.run.batch`."""
         rows = self.rows()
         lines = [["description", *rows[0]]]
         for number, row in enumerate(rows, 1):
@@ -252,7 +245,6 @@ class Study:
 
 
 def _unfit(what, names):
-    """Why names cannot vary by that, sentences."""
     isField, several = isinstance(what, Field), len(names) > 1
     properties = all("." in name for name in names)
     if isField and not properties:
@@ -269,7 +261,6 @@ def namesOf(column: str) -> list[str]:
 
 
 def _wrongOption(name, value):
-    """What is wrong with an option or a property."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
         yield f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
     elif name in batch.OWN:

@@ -36,7 +36,6 @@ def probe(scene, stage, traits, arguments):
     - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it
       may not use
     - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each
-      kind
     - ``bounds``: ``low``, ``high`` and ``unit`` of the properties of a joint; ``connectors``: the
       same of every tie, spring and fibre layer
     - ``room``: bytes that a run will probably write
@@ -114,7 +113,6 @@ def _rows(scene, parser):
 
 
 def _refused(scene, parser, words):
-    """Why a row is refused, a list of sentences."""
     args, refusals = parser.refusals(words)
     if refusals:
         return refusals

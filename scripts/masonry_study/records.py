@@ -14,7 +14,6 @@ from .gathering import CSV, Folder
 
 
 def _table(path):
-    """A CSV file as a dict of column -> texts. Raises Refused."""
     head, *lines = [*csv.reader(readText(path).splitlines())] or [[]]
     if head[:1] != ["run"] or "status" not in head:
         raise Refused(f"{path}: this is no table of a study: it needs the columns run and status")
@@ -34,10 +33,7 @@ IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 
 
 class Record:
-    """The rows of a study.
-
-    :raises Refused: if there is no such table in it, or it is damaged
-    """
+    """The rows of a study. Raises Refused if its table is missing or damaged."""
 
     def __init__(self, directory):
         self.directory = directory
@@ -53,8 +49,8 @@ class Record:
 
     @property
     def correlation(self):
-        """Rank correlations with which properties were drawn, by pairs of their columns; none if
-        the folder has no study.json."""
+        """Rank correlations with which properties were drawn, by pairs of their columns; none
+        without study.json."""
         with contextlib.suppress(Refused):
             study = Folder(self.directory).description()["study"]
             return {(one, two): rank for one, two, rank in study.get("correlation", ())}
@@ -89,8 +85,7 @@ class Record:
         return rows, numbers, values[rows]
 
     def curves(self, rows, x, y):
-        """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left
-        out."""
+        """Columns x and y of the curves of rows; those without a curve are left out."""
         folder, found = Folder(self.directory), []
         for row in rows:
             with contextlib.suppress(Refused, KeyError):

@@ -43,7 +43,6 @@ def label(name):
 
 
 def table(record, measure):
-    """Lines of the table of statistics of a measure."""
     rows, _, values = record.complete(measure)
     yield f"{label(measure)}: {len(rows)} of {len(record)} rows"
     ended = record.cells["status"].count("ended")
@@ -76,7 +75,6 @@ def line(name, interval, form="{:.5g}"):
 
 
 def modes(record):
-    """Lines of the shares of failure modes, if there are any."""
     labels = [text for text in record.cells.get(MODE, []) if text]
     if labels:
         yield "share of the rows that fail by"
@@ -85,7 +83,6 @@ def modes(record):
 
 
 def statuses(record):
-    """Lines about rows that have no results, or whose push was too fast, if there are any."""
     fast = record.cells.get("too_fast", []).count("True")
     if fast:
         yield (
@@ -194,7 +191,6 @@ def incremental(demands, limit, intensities):
 
 
 def reached(demands, limit):
-    """What a limit is, in words."""
     if limit is None:
         return "the structure falls"
     return f"{label(demands.measure or 'demand')} reaches {limit:g}"
@@ -206,7 +202,7 @@ def _cell(value):
 
 def drawIncremental(demands, limit):
     """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and
-    yield a line for each, or why there is none."""
+    yield as :func:`draw`."""
     measure = label(demands.intensityName)
 
     def curves(path):
@@ -265,7 +261,6 @@ def parser():
 
 @program
 def main(words=None):
-    """The program. Returns its exit status."""
     args = parser().parse_args(words)
     demands = sorted(_listed("--demand", args.demand))
     limit = _listed("--limit", args.limit)
@@ -279,7 +274,6 @@ def main(words=None):
 
 
 def isIncremental(directory):
-    """Whether a folder holds a study with records; a study.csv alone is not one."""
     try:
         return Folder(directory).chains.plan is not None
     except Refused:
@@ -287,7 +281,6 @@ def isIncremental(directory):
 
 
 def _ofRows(record, args, limit, demands):
-    """Lines of what independent rows say, which are also drawn."""
     if limit:
         raise Refused("--limit: this is no incremental dynamic analysis")
     measure = args.measure or record.measure(MEASURE)
@@ -302,7 +295,6 @@ def _ofRows(record, args, limit, demands):
 
 
 def _ofIncremental(record, args, limit, intensities):
-    """Lines of what an incremental dynamic analysis says, which are also drawn."""
     if len(limit) > 1 or limit and not limit[0] > 0:
         raise Refused(f"--limit {args.limit} must be one number above 0")
     if intensities and not intensities[0] > 0:
@@ -315,7 +307,6 @@ def _ofIncremental(record, args, limit, intensities):
 
 
 def _listed(option, text):
-    """Numbers with commas between them."""
     try:
         numbers = list(map(float, text.split(","))) if text else []
     except ValueError:

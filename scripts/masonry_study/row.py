@@ -7,9 +7,8 @@ falls. A row that was run is left out, one that was stopped goes on from its che
 that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. The exit
 status is 0 if all rows are ended.
 
-The scene is a program, and the folder of a study is data: that study.json names a scene is no
-reason to run it. So the user names it, unless it is in the folder itself, and it must be the file
-with which the study began.
+The scene is a program, and the folder of a study is data. So the user names the scene, unless it is
+in the folder itself, and it must be the file with which the study began.
 """
 
 import argparse
@@ -86,8 +85,7 @@ class RowRunner:
         return 0 if folder.isEnded(number) else status
 
     def _checkRecord(self, number):
-        """Refuse a record that is not the one with which the study began: a file that was cut off
-        in a copy, for example."""
+        """Refuse a record that is not the one with which the study began."""
         chains = self.folder.chains
         if not chains.plan:
             return
@@ -100,7 +98,7 @@ class RowRunner:
             )
 
     def _attempts(self, number, log):
-        """Run it; once more from the beginning if its checkpoint is refused. Returns the exit
+        """Run it, once more from the beginning if its checkpoint is refused. Returns the exit
         status."""
         folder, checkpoint = self.folder, self.folder.checkpoint(number)
         for _ in range(ATTEMPTS):
@@ -163,7 +161,6 @@ def _sceneOf(folder, named):
 
 
 def _fingerprint(path, what=""):
-    """The hash of a file. Raises Refused."""
     try:
         return hashlib.sha256(readWhole(path)).hexdigest()
     except OSError as error:
@@ -193,7 +190,6 @@ def main(words):
 
 
 def _runRows(args):
-    """Run the rows that the command line names. Returns the exit status."""
     runner = RowRunner(args.study, args.scene)
     chains = runner.folder.chains
     beyond = [str(n) for n in args.rows if not 1 <= n <= chains.runs]

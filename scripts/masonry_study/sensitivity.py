@@ -46,10 +46,10 @@ DEPENDENT = (
 
 def effects(inputs, output):
     """What every varied property does: a dict of name -> :class:`Effect`, strongest change first.
+    Raises Refused if there are fewer than three rows more than properties.
 
     :param inputs: dict of name -> values, one a row; a property that has one value is left out
     :param output: of every row
-    :raises Refused: if there are fewer than three rows more than properties
     """
     inputs, x, y = _varying(inputs, output)
     n, k = x.shape
@@ -86,8 +86,7 @@ def effects(inputs, output):
 
 
 def sobol(inputs, output, seed=1):
-    """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties:
-    a :class:`Sobol`.
+    """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties.
 
     The rank of a property is uniform whatever its distribution; indices do not change by that.
     OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares
@@ -95,7 +94,6 @@ def sobol(inputs, output, seed=1):
     samples of the rows, drawn with replacement and ranked again, with the same polynomials.
 
     :param inputs: as in :func:`effects`, drawn independently of each other
-    :param output: of every row
     :param seed: of the samples
     :raises Refused: if there are fewer than ten rows a property, or properties are dependent
     """
@@ -116,8 +114,7 @@ def sobol(inputs, output, seed=1):
 
 
 def shapley(inputs, output, seed=1):
-    """Shapley effects, the shares of the variance of properties that may depend on each other: a
-    :class:`Shapley`.
+    """Shapley effects, the shares of the variance of properties that may depend on each other.
 
     What two properties explain together is divided evenly among them (A. B. Owen and C. Prieur, "On
     Shapley value for measuring importance of dependent inputs", SIAM/ASA J. Uncertainty
@@ -152,7 +149,6 @@ def dependent(inputs):
 
 
 def _ranks(x):
-    """Ranks of the values of every column, between 0 and 1."""
     return (stats.rankdata(x, axis=0) - 0.5) / len(x)
 
 
@@ -193,7 +189,6 @@ def _meanShares(matrix):
 
 
 def _unfit(what, x, y):
-    """Sentences on why some rows have no shares of the variance."""
     n, k = x.shape
     if n < 10 * k:
         yield f"{what} of {k} properties need {10 * k} rows or more, there are {n}"
@@ -229,15 +224,14 @@ def _terms(powers, u):
 
 
 def _shares(powers, coefficients):
-    """First and total shares of the variance: an array (2, properties)."""
+    """First and total shares of the variance (2, properties)."""
     squares, involved = coefficients[1:] ** 2, powers[1:] > 0
     alone = involved & (involved.sum(axis=1) == 1)[:, None]
     return np.array([squares @ alone, squares @ involved]) / (squares.sum() or 1)
 
 
 def _varying(inputs, output):
-    """The properties that vary, their values (rows, properties) and the output. Refuses if there
-    are none."""
+    """The properties that vary, their values (rows, properties) and the output. Raises Refused."""
     kept = {name: values for name, values in inputs.items() if np.ptp(values) > 0}
     if not kept:
         raise Refused("no property varies")

@@ -40,8 +40,8 @@ def spectralAcceleration(
 ) -> float:
     """The pseudo spectral acceleration of a record [m/s²]: ω² times the largest displacement.
 
-    The largest displacement is looked for during the record and a period of free vibration after
-    it, at a hundred points of a period or more, so it is too small by 0.05 % at most.
+    This is looked for during the record and a period of free vibration after it, at a hundred
+    points of a period or more, so it is too small by 0.05 % at most.
 
     :param values: samples of the acceleration [m/s²], between which it is interpolated; ``every``:
         the time between them [s]

@@ -88,7 +88,6 @@ def _compare(folder, known, now):
 
 
 def _checkEmpty(folder):
-    """Refuse a folder of something else."""
     try:
         names = sorted({*os.listdir(folder.path)} - {STUDY + ".new"})  # of a study that was killed
     except FileNotFoundError:
@@ -140,10 +139,9 @@ def _look(study, script, table):
 
 
 def _probed(script, place, line=2):
-    """What :mod:`masonry_study.probing` writes, as a dict, or why there is none.
+    """What :mod:`masonry_study.probing` writes, or why there is none.
 
-    :param line: of the table: the options with which the scene is built; 1: it is built without
-        options
+    :param line: of the table: the options with which the scene is built; 1: without options
     """
     path = place.of("probe.json")
     row = {batch.VARIABLE: f"{place.of(TABLE)}:{line}", batch.PROBE: path}
@@ -167,7 +165,6 @@ def _probed(script, place, line=2):
 
 
 def _names(study, found):
-    """Names that the scene ignores."""
     if not found["heard"]:
         yield (
             "its scene takes no options from the command line (arguments=...), and would ignore all"
@@ -181,8 +178,8 @@ def _names(study, found):
 
 
 def _ignored(found, name):
-    """Why the scene ignores an option or a property, or nothing; wrong names of properties are for
-    the rows to tell."""
+    """Why the scene ignores an option or a property; wrong names of properties are for the rows to
+    tell."""
     kind, dot, attribute = name.partition(".")
     if not dot:
         if name not in found["options"]:
@@ -202,7 +199,6 @@ def _ignored(found, name):
 
 
 def _ranges(study, found):
-    """Distributions that can give what a property cannot be."""
     for column, what in study.vary.items():
         if isinstance(what, Field) and what.kind == "normal" and (what.mean or 0) < 0:
             yield f"{column}: mean {what.mean:g} must be above 0"

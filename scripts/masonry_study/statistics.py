@@ -25,10 +25,7 @@ Lognormal = namedtuple("Lognormal", "median dispersion fits")
 
 
 def mean(values):
-    """The mean, with the interval of Student's t.
-
-    :param values: two numbers or more
-    """
+    """The mean, with the interval of Student's t, of two numbers or more."""
     values = _numbers(values, 2, "a mean with its interval")
     t = stats.t.ppf((1 + CONFIDENCE) / 2, len(values) - 1)
     middle, half = values.mean(), t * values.std(ddof=1) / math.sqrt(len(values))
@@ -64,9 +61,6 @@ def quantile(values, share):
     The ends of the interval are values of the sample, by the binomial distribution of how many lie
     below. With too few of them an end is infinite: the 5 % quantile needs 72 rows for both ends of
     a 95 % interval.
-
-    :param values: two numbers or more
-    :param share: between 0 and 1
     """
     values = np.sort(_numbers(values, 2, "a quantile"))
     n, tail = len(values), (1 - CONFIDENCE) / 2
@@ -78,17 +72,12 @@ def quantile(values, share):
 
 
 def share(count, of):
-    """A share of a number of rows, with Wilson's interval.
-
-    :param count: how many rows have what is asked for
-    :param of: how many rows there are, one or more
-    """
+    """A share of a number of rows, with Wilson's interval."""
     found = stats.binomtest(int(count), int(of))
     return Interval(count / of, *found.proportion_ci(CONFIDENCE, method="wilson"))
 
 
 def shares(labels):
-    """How often each label occurs: a dict of label -> :class:`Interval`, most frequent first."""
     counts = Counter(sorted(labels, key=str)).most_common()
     return {label: share(count, len(labels)) for label, count in counts}
 
@@ -99,11 +88,8 @@ def isLognormal(values):
 
 
 def lognormal(values):
-    """The lognormal distribution with the mean and standard deviation of the logarithms: a
-    :class:`Lognormal`.
-
-    :param values: for which :func:`isLognormal` holds
-    """
+    """The lognormal distribution with the mean and standard deviation of the logarithms, of values
+    for which :func:`isLognormal` holds."""
     logs = np.log(values)
     fits = stats.shapiro(logs).pvalue if len(logs) <= 5000 else math.nan
     return Lognormal(math.exp(logs.mean()), logs.std(ddof=1), fits)

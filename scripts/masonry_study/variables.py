@@ -29,7 +29,6 @@ class Distribution:
     parameters: tuple
 
     def law(self) -> Any:
-        """The distribution of OpenTURNS."""
         ot, p = needed("openturns"), dict(self.parameters)
         if self.kind == "uniform":
             return ot.Uniform(p["low"], p["high"])
@@ -93,12 +92,11 @@ def _aboutMean(kind, mean, cov, low, high):
 def lognormal(
     mean: Finite, cov: Finite, low: Finite | None = None, high: Finite | None = None
 ) -> Distribution:
-    """A lognormal distribution.
+    """A lognormal distribution. Raises Refused if nearly nothing is between its two ends.
 
     :param mean: in the unit of what varies
     :param cov: coefficient of variation, standard deviation over mean [-]
     :param low: cuts it off below, ``high`` above; mean and cov are those before
-    :raises Refused: if something is out of its bounds, or if nearly nothing is between the two ends
     """
     return _aboutMean("lognormal", mean, cov, low, high)
 
@@ -128,7 +126,6 @@ class Choice:
     weights: tuple
 
     def valuesAt(self, probabilities: Sequence[float]) -> list[Any]:
-        """The values at probabilities from 0 to 1."""
         ends = [*itertools.accumulate(self.weights)][:-1]
         return [self.values[bisect.bisect_right(ends, u)] for u in probabilities]
 
@@ -137,7 +134,6 @@ class Choice:
 
 
 def _chosen(value, first=None):
-    """The kind of a value of a choice."""
     if isinstance(value, str):
         return text(value)
     if isNumber(value):
@@ -180,7 +176,6 @@ class Field:
         return {"kind": "field", "of": entries.pop("kind"), **entries}
 
     def written(self, seed: int) -> str:
-        """As a table has it."""
         return fields.written(self.kind, self.cov, self.length, seed)
 
 

@@ -64,12 +64,11 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
 def readRuns(
     directories: Sequence[FilePath], x: str | None = None, y: str | None = None
 ) -> tuple[list[Any], list[str] | None]:
-    """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
+    """Curves of runs: a list of (x, y) arrays, and the labels of both axes. Raises Refused if a
+    column is not there, or if none is named.
 
-    :param directories: folders of runs
     :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
     :param y: as ``x``; None: the first one of this entry
-    :raises Refused: if a column is not there, or if none is named
     """
     curves, labels = [], None
     for directory in directories:
@@ -109,18 +108,15 @@ def compare(
     out: FilePath = "plot.png",
     title: str = "",
 ) -> FilePath:
-    """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns
-    the path.
+    """Draw curves over each other, measured ones black and behind, runs in colours. Returns the
+    path. Raises Refused if something cannot be read or drawn.
 
     :param directories: folders of runs
     :param measured: texts ``FILE:X:Y``, as in :func:`readMeasured`
-    :param x: column of curve.csv; None: as curve.png has it
-    :param y: as ``x``
+    :param x: column of curve.csv, as ``y``; None: as curve.png has it
     :param labels: names for the legend, of all runs and then of all measured curves; what is
         missing is named after its folder or file
     :param out: path of the picture, .png, .pdf or .svg
-    :param title: of the picture
-    :raises Refused: if something cannot be read or drawn
     """
     if os.path.splitext(out)[1].lower() not in (".png", ".pdf", ".svg"):
         raise Refused(f"--out: {out} must end in .png, .pdf or .svg")
@@ -177,7 +173,6 @@ def _names(directories, measured):
 
 @program
 def main(words: Sequence[str] | None = None) -> None:
-    """The program ``scripts/plot.py``."""
     parser = argparse.ArgumentParser(
         description="Draw curves of runs and of measured CSV files over each other."
     )

@@ -13,9 +13,10 @@ from masonry.numbers import drawing, loops
 from masonry.numbers.files import readCurve, readRun
 
 LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cyan"]
+Entries = dict[str, Any]
 
 
-def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict[str, Any]:
+def plan(run: Entries, data: Entries, directory: FilePath) -> Entries:
     """The entry ``figure`` of run.json, with all that may be left out, and the numbers of all its
     rows. Raises Refused if it cannot be drawn.
 
@@ -45,12 +46,9 @@ def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict
     return {**spec, "rows": [n for first, end in spans for n in range(first, end)]}
 
 
-def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+def energies(data: Entries) -> tuple[Entries, Any]:
     """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or
-    None.
-
-    :param data: dict of column name -> array; columns of energies end in ``_J``
-    """
+    None."""
     since = {k[:-2]: v - v[0] for k, v in data.items() if k[-2:] == "_J" and len(v) > 1}
     work = [since.pop(name) for name in ("external", "gravity") if name in since]
     elastic = [since.pop(name) for name in list(since) if name.startswith("elastic_")]
@@ -69,22 +67,17 @@ def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
 
 
 def curve(directory: FilePath) -> None:
-    """Draw curve.png: what the entry ``figure`` of run.json says and, below it, the energies."""
     run, data = readRun(directory), readCurve(directory)
     with drawing.style():
         figure = figureOf(run, data, directory)
         drawing.save(figure, os.path.join(directory, "curve.png"), 110)
 
 
-def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> Any:
+def figureOf(run: Entries, data: Entries, directory: FilePath) -> Any:
     """The figure of curve.png, for use in :func:`masonry.numbers.drawing.style`. Raises Refused.
 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the
-    length of the way.
-
-    :param run: entries of run.json: ``figure`` and ``title``
-    :param data: dict of column name -> numbers
-    :param directory: folder, for messages
+    length of the way. Parameters as in :func:`plan`.
     """
     data = {name: np.array(values) for name, values in data.items()}
     spec = plan(run, data, directory)
@@ -110,7 +103,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
     return figure
 
 
-def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> Any:
+def panelOf(spec: Entries, data: Entries, ideal: Any = None) -> Any:
     """A figure of the curve alone.
 
     :param spec: as :func:`plan` completes it
@@ -125,8 +118,8 @@ def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> An
     return figure
 
 
-def energiesOf(x: Any, label: str, stack: dict[str, Any], work: Any) -> Any:
-    """A figure of the energies alone, over x; ``stack`` and ``work`` are as in :func:`energies`."""
+def energiesOf(x: Any, label: str, stack: Entries, work: Any) -> Any:
+    """A figure of the energies alone, over x; ``stack`` and ``work`` as in :func:`energies`."""
     figure = drawing.empty(7, 3.4)
     _energies(figure.subplots(), x, label, stack, work)
     figure.tight_layout()
@@ -134,7 +127,6 @@ def energiesOf(x: Any, label: str, stack: dict[str, Any], work: Any) -> Any:
 
 
 def _energies(axes, x, label, stack, work):
-    """The lower panel of curve.png."""
     for name, values in stack.items():
         axes.plot(x, values, lw=1, label=name)
     if work is not None:
@@ -143,7 +135,6 @@ def _energies(axes, x, label, stack, work):
 
 
 def _curves(axes, spec, data, ideal=None):
-    """The upper panel of curve.png."""
     looped, x = spec["looped"], data[spec["x"]["column"]]
     first = data[spec["y"][0]["column"]]
     for n, axis in enumerate(spec["y"]):
@@ -182,7 +173,7 @@ def _curves(axes, spec, data, ideal=None):
     axes.grid(alpha=0.3)
 
 
-def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
+def limits(spec: Entries, data: Entries) -> tuple[float, float]:
     """Range of the upper panel, which has all of the first curve, and of the others all but single
     swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
@@ -197,7 +188,7 @@ def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
     return low - 0.15 * reach, high + 0.15 * reach
 
 
-def unitOf(axis: dict[str, Any]) -> str:
+def unitOf(axis: Entries) -> str:
     """Unit of an axis: in the brackets of its label, else at the end of the name of its column."""
     found = re.search(r"\[([^\]]*)\]\s*$", axis["label"])
     return found[1] if found else axis["column"].rsplit("_", 1)[-1]

@@ -80,7 +80,6 @@ class Structure:
         self.shades = {**self.shades, self.ground: "ground"}
 
     def points(self, bodies):
-        """Numbers of the points of some blocks."""
         return np.concatenate([self.corners[body] for body in bodies])
 
     def outer(self, body):
@@ -209,7 +208,6 @@ class Elevation:
         self._frame(axes, magnification, scale)
 
     def _frame(self, axes, magnification, scale):
-        """Axes, or none in space, and the scale below the structure."""
         low, high = self.box(magnification)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
@@ -283,7 +281,7 @@ def figureOf(structure, title, magnification=None, later=None):
     magnified deformed structure over the undeformed one, with its cracks. What moves across a
     façade, is seen from above or falls is seen in space, too.
 
-    :param title: above it; ``{}`` in it is what is said of the magnification
+    :param title: ``{}`` in it is what is said of the magnification
     :param magnification: 0: as built; None: that of :func:`magnificationOf`
     :param later: a moment and the structure then, drawn true to scale; or None
     """
@@ -335,14 +333,12 @@ def figureOf(structure, title, magnification=None, later=None):
 
 
 def _cells(sizes, columns):
-    """Widths of the columns and heights of the rows of a page of elevations of these sizes [m]."""
     wides = [max(sizes[c::columns, 0]) for c in range(columns)]
     highs = [max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]
     return np.array(wides), np.array(highs)
 
 
 def _scale(sizes, columns):
-    """The largest scale with which they stand on a page in so many columns [inch/m]."""
     wides, highs = _cells(sizes, columns)
     most = 7.2 if len(sizes) == 1 else 10.0 - 0.85 * columns
     return min(most / sum(wides), (9.5 - 0.75 * len(highs)) / sum(highs))
@@ -351,8 +347,6 @@ def _scale(sizes, columns):
 def structureOf(run, blocks, joints, directory):
     """The blocks and joints of a frame with what run.json says of them. Raises Refused.
 
-    :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body``
-        and ``ground_body``
     :param directory: folder, for messages
     """
     bodies = set(map(int, blocks["body"]))
@@ -384,8 +378,7 @@ def cracksOf(run, blocks, joints, when, directory, later=None):
     """The figure of cracks.png: open joints red, slid ones blue, crushed spots black. Raises
     Refused.
 
-    :param when: names the moment of the frame; ``later`` is as in :func:`figureOf`, the others as
-        in :func:`structureOf`
+    :param when: names the moment of the frame; ``later`` is as in :func:`figureOf`
     """
     limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     title = f"{run['title']}\n{when}\n{{}}; {limits}"
@@ -393,8 +386,7 @@ def cracksOf(run, blocks, joints, when, directory, later=None):
 
 
 def cracksOfRun(run, directory):
-    """The figure of cracks.png of a run with these entries of run.json; of a collapse with its end
-    beside it."""
+    """The figure of cracks.png of a run; of a collapse with its end beside it."""
     frames = lambda n: [readFrame(directory, kind, n, NEEDED) for kind in ("blocks", "joints")]
     last, chosen, later = len(frameTimes(directory)) - 1, frameOfCracks(run, directory), None
     if chosen != last:
@@ -405,7 +397,6 @@ def cracksOfRun(run, directory):
 
 
 def cracks(directory):
-    """Draw cracks.png."""
     with drawing.style():
         figure = cracksOfRun(readRun(directory), directory)
         drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
@@ -427,7 +418,7 @@ def _moments(run, directory):
 
 def frameOfCracks(run, directory):
     """Number of the frame whose cracks are drawn, from 0: the last one, or that when a collapse was
-    noticed or the first block had fallen; ``run``: entries of run.json."""
+    noticed or the first block had fallen."""
     moments = _moments(run, directory)
     return moments[0][0] if moments else len(frameTimes(directory)) - 1
 

@@ -3,11 +3,8 @@
 
 ``/usr/bin/python3 -m masonry_view.figures results/wall_comp4`` draws curve.png, if there are
 ParaView files cracks.png, and if there is a mechanism of limit analysis mechanism.png. From a
-script, also one of YADE, ``masonry_view.figures.draw(folder)`` does the same. This module loads
-neither YADE nor VTK nor a display.
-
-The entries ``figure`` and ``parts`` of run.json say what curve.png and the panels of cracks.png
-show; see :mod:`masonry.run.results`.
+script, also one of YADE, ``masonry_view.figures.draw(folder)`` does the same. The entries
+``figure`` and ``parts`` of run.json say what they show; see :mod:`masonry.run.results`.
 """
 
 import glob

@@ -71,11 +71,8 @@ def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, 
 
 @validated
 def measure(directory: FilePath) -> dict[str, Any]:
-    """Numbers of a run as a dict by name: those at the top level of run.json, and those measured
-    here.
-
-    ``balance_error`` is the ``energy_balance_error`` of run.json.
-    """
+    """Numbers of a run by name: those at the top level of run.json, and those measured here.
+    ``balance_error`` is its ``energy_balance_error``."""
     numbers = readRun(directory)
     with filesOf(directory):
         numbers["balance_error"] = numbers.pop("energy_balance_error")
@@ -99,7 +96,6 @@ def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
 
 
 def show(directory: FilePath) -> None:
-    """Print all numbers of a run, and a table of its cycles if there are any."""
     for name, value in measure(directory).items():
         say(f"{name:34} {value if isinstance(value, str) else f'{value:.6g}'}")
     cycles = readRun(directory).get("cycles")

@@ -19,7 +19,6 @@ KINDS = "", CRACK_SURFACE
 
 
 def isThere(directory):
-    """Whether a folder has a mechanism."""
     return os.path.exists(os.path.join(directory, FILE))
 
 

@@ -31,8 +31,8 @@ DPI, COLOURS = 72, 64  # of a picture, which then has 10 to 50 kB
 
 
 def picture(draws):
-    """The figure of matplotlib that a function gives, as an image that stands in the HTML itself.
-    Its palette of few colours makes it a third as large."""
+    """The figure of matplotlib that a function gives, as an image in the HTML itself. Its palette
+    of few colours makes it a third as large."""
     from PIL import Image
 
     drawn, small = io.BytesIO(), io.BytesIO()
@@ -60,7 +60,6 @@ def folded(title, inside):
 
 
 def titled(title, *parts):
-    """Parts below a title."""
     return f"<div><b>{html.escape(title)}</b>{''.join(parts)}</div>"
 
 
@@ -70,23 +69,17 @@ UNITS = {"mm", "m", "s", "kN", "N", "MPa", "kPa", "Pa", "J", "g", "mrad", "rad",
 
 def unitOf(head, meaning):
     """The unit of a column: in the brackets at the end of its meaning, else at the end of its name,
-    else ``"-"``.
-
-    :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
-    """
+    else ``"-"``."""
     unit = curve_figure.unitOf({"label": meaning, "column": head})
     return unit if meaning.endswith("]") or unit in UNITS else "-"
 
 
 class Curve:
-    """Columns of curve.csv: ``curve["base_shear_kN"]`` is an array of numpy.
+    """Columns of curve.csv: ``curve["base_shear_kN"]`` is an array of numpy. ``units`` and
+    ``meanings`` are dicts by the names of the columns; iterating gives the names.
 
-    ``units`` and ``meanings`` are dicts by the names of the columns; iterating gives the names, as
-    with a dict.
-
-    :param columns: dict of name -> numbers; ``meanings``: dict of name -> what it means, with its
-        unit in brackets
-    :param draws: function without arguments that gives a figure of matplotlib, or None
+    :param meanings: what each means, with its unit in brackets
+    :param draws: function that gives a figure of matplotlib, or None
     """
 
     def __init__(self, columns, meanings, draws=None):
@@ -111,14 +104,11 @@ class Curve:
         return max(map(len, self._columns.values()), default=0)
 
     def keys(self):
-        """The names of the columns."""
         return self._columns.keys()
 
     def to_pandas(self):
         """The columns as a ``pandas.DataFrame``, whose ``attrs`` has ``units`` and ``meanings``.
-
-        :raises ImportError: if pandas is not installed
-        """
+        Raises ImportError."""
         try:
             import pandas
         except ModuleNotFoundError as error:
@@ -154,7 +144,6 @@ class Curve:
 def curveOf(columns, run, directory):
     """A :class:`Curve` of a run that draws itself as curve.png.
 
-    :param columns: dict of name -> numbers
     :param run: entries of run.json: ``columns``, and ``figure`` and ``title`` if it is to be drawn
     :param directory: folder, for messages
     """
@@ -164,10 +153,7 @@ def curveOf(columns, run, directory):
 
 class RunFolder:
     """A folder of results, which shows itself in a notebook: cracks, curve and a table of results.
-
-    :param directory: folder of a run that has ended
-    :raises Refused: if there are no files of a run
-    """
+    Raises Refused."""
 
     @validated
     def __init__(self, directory):
@@ -194,8 +180,7 @@ class RunFolder:
 
 
 def resultsOf(run):
-    """Rows of the table of results, from the entries of run.json: what it is, its value and its
-    unit."""
+    """Rows of the table of results: what it is, its value and its unit."""
     named = {"collapsed": "collapse", "ended by": "error"}
     rows = [(what, run[key], "") for what, key in named.items() if run.get(key)]
     for one in run.get("answers", []):

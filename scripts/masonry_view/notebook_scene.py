@@ -24,11 +24,7 @@ OF_UNITS = "density", "young", "poisson"
 
 
 def curve(scene):
-    """The columns of curve.csv so far: a :class:`masonry_view.notebook.Curve`, arrays of numpy by
-    name with their units.
-
-    :raises ValueError: before the first stage, since there is no row yet
-    """
+    """The columns of curve.csv so far. Raises ValueError before the first stage."""
     if not scene.model:
         raise ValueError(f"curve: scene {scene.name} has no rows before its first stage")
     results = scene.results
@@ -121,7 +117,6 @@ def _shade(target):
 
 
 def _counted(description):
-    """Rows of the table: what is built, with the number of its joints."""
     yield from summary.sizes(description)
     bricks = Bricks(description.bricks)
     if len(bricks) <= MAX_COUNTED:

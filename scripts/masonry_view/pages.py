@@ -48,7 +48,7 @@ def write(path, text):
 def save(makePage, path, directory, name):
     """Write a page for the user of a program, and say so. Raises Refused if it cannot be written.
 
-    :param makePage: function that returns the page; it is called if the path is fine
+    :param makePage: is called if the path is fine
     :param path: of a file that ends in .html or .htm; None: ``name`` in the folder of the run
     """
     if path is None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too,
-and how matplotlib draws faces, light and cracks."""
+"""The one style of all pictures of blocks: its colours, which pages have, too, and how matplotlib
+draws faces, light and cracks."""
 
 import copy
 import heapq
@@ -161,10 +161,9 @@ class Painting:
         )
 
     def finish(self, axes, flat, legend):
-        """Put all into axes, with names for the legend.
+        """Put all into axes; ``legend``: whether it names cracks.
 
         :param flat: function of points in space that gives their places in the picture
-        :param legend: whether it names cracks
         """
         from matplotlib.collections import LineCollection, PolyCollection
 

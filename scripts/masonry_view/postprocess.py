@@ -4,10 +4,10 @@
     python3 -P -m masonry_view.postprocess
 
 A run starts it early, so that it loads what it needs while the run goes on. When the files of the
-run are there, it reads the folder from the standard input, up to a zero byte, or ends if that is
-empty. It draws curve.png and cracks.png in a copy of the process, mechanism.png in another, makes
-the report meanwhile, and writes report.html when the figures are there. Errors that nobody expects
-go to the standard output, as JSON: pairs of a note and a traceback.
+run are there, it reads the folder from the standard input, up to a zero byte. It draws curve.png
+and cracks.png in a copy of the process, mechanism.png in another, makes the report meanwhile, and
+writes report.html when the figures are there. Errors that nobody expects go to the standard output,
+as JSON: pairs of a note and a traceback.
 """
 
 import contextlib
@@ -68,11 +68,8 @@ def _tasks(folder):
 
 
 def _tried(what, act, *words):
-    """Let a function draw or write something.
-
-    :returns: its exit status if disk or memory is full, else 0; and the notes and tracebacks of
-        other errors
-    """
+    """Let a function draw or write something. Returns its exit status if disk or memory is full,
+    else 0; and the notes and tracebacks of other errors."""
     failures = []
 
     def acting(word):
@@ -87,7 +84,6 @@ def _tried(what, act, *words):
 
 
 def main():
-    """The program. Returns its exit status."""
     _load()
     folder = _folder()
     if not folder:

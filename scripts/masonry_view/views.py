@@ -26,14 +26,13 @@ View = namedtuple("View", "right up towards start labels name")
 def viewOf(points, normals, areas, direction=None):
     """The :class:`View` of a part, chosen by its shape.
 
-    If no joint looks along one horizontal direction, as in an arch or a wall of one wythe at any
-    angle in plan, the part is seen along it; else along the short side of the smallest rectangle
-    around its plan, or from above if it is wider than high, as a dome or a vault is. What is up
-    stays up; from above, y is up.
+    If no joint looks along one horizontal direction, as in an arch or a wall of one wythe, the part
+    is seen along it; else along the short side of the smallest rectangle around its plan, or from
+    above if it is wider than high, as a dome or a vault is. What is up stays up; from above, y is
+    up.
 
-    :param points: corners of its blocks, an array of (x, y, z) [m]
-    :param normals: unit normals of its joints, an array
-    :param areas: areas of these joints [m²]
+    :param points: corners of its blocks (n, 3) [m]
+    :param normals: unit normals of its joints, with their ``areas`` [m²]
     :param direction: of sight (x, y, z), if the user gave one
     """
     from scipy.spatial import ConvexHull
@@ -68,7 +67,7 @@ def spaceViewOf(front, points, moved):
     front, and turned to where most of it moved.
 
     :param front: ``towards`` of the view of the part that shows it
-    :param points: as built (n, 3) [m]; ``moved``: their displacements (n, 3) [m]
+    :param points: as built, ``moved``: their displacements (n, 3) [m]
     """
     side = front[:2] if abs(front[2]) < 0.9 else np.array([0, -1.0])
     side = side / np.linalg.norm(side)
@@ -114,7 +113,6 @@ def magnificationOf(joints, moved, blocks):
     """How much displacements are magnified: as usual, less where blocks would be drawn far away,
     over each other or in the air, and not at all where no joint is cracked.
 
-    :param joints: the frame of the joints, or None
     :param moved: displacements of points of the blocks (n, 3) [m]
     :param blocks: arrays of the corners of each (n, 3) [m]
     """

@@ -70,7 +70,6 @@ def test_the_table_of_fidelities_names_runs_and_options_that_there_are():
         assert fidelityOf(args) is fidelity
     used = {n for fidelity in FIDELITIES for s in fidelity.sources for n in s.runs}
     assert used == {*COMPANIONS, MAIN}
-    assert [f.cost for f in FIDELITIES] == sorted(f.cost for f in FIDELITIES)
 
 
 def test_a_finer_fidelity_takes_what_it_does_not_know_yet_from_the_one_before():

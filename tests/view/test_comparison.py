@@ -113,32 +113,24 @@ def plot():
 
 
 def test_yade_plot_is_filled_if_the_user_asks(plot, monkeypatch):
-    from masonry.run.plotting import live
+    from masonry.run.readings import Readings, plotted
 
     columns = ["time_s", "u_mm", "f_kN"]
-    assert live(columns) is None
-    plot.plots = {"x": ("y",), "picture": None}
-    assert live(columns) is None
-    for plots in (
-        {"u_mm": None},
-        {"x": "f_kN"},
-        {"x": ("y", None, ("f_kN", "r-"))},
-        {" time_s ": ()},
-    ):
+    assert plotted(columns) is None
+    plot.plots = {"x": ("u_mm",), "picture": None}
+    assert plotted(columns) is None
+    for plots in ({"u_mm": None}, {" time_s ": ("y", None, ("f_kN", "r-"))}):
         plot.plots = plots
-        assert live(columns)
-    add = live(columns)
-    add([0, 1, 2])
+        assert plotted(columns) is plot
+    results = SimpleNamespace(columns=columns, append=lambda rows: None)
+    readings = Readings([], results)
+    readings.waiting = [[0, 1, 2]]
+    readings.write()
     plot.addData(mine=7)  # what the user adds beside
-    add((1, 2, 3))
-    add((2, 3, 4))
+    readings.waiting = [(1, 2, 3), (2, 3, 4)]
+    readings.write()
     nan = approx(float("nan"), nan_ok=True)
     assert plot.data["u_mm"] == [1, nan, 2, 3] and plot.data["f_kN"] == [2, nan, 3, 4]
     assert plot.data["mine"] == [nan, 7, nan, nan]
-    with raises(ValueError, match="a row of 2 numbers for 3 columns"):
-        add((1, 2))
-    plot.resetData()
-    add((5, 6, 7))
-    assert plot.data == {"time_s": [5], "u_mm": [6], "f_kN": [7]}
     monkeypatch.delitem(sys.modules, "yade.plot")
-    assert live(columns) is None
+    assert plotted(columns) is None

@@ -32,7 +32,9 @@ class Point:
 
     def masonry(self):
         """Calcium silicate with the changes of this point."""
-        joints = materials.calciumSilicateJoints("--joints brittle" in self.words)
+        joints = materials.calciumSilicateJoints()
+        if "--joints brittle" in self.words:
+            joints = {n: j if j.elastic else j.brittleCoulomb() for n, j in joints.items()}
         for name, values in self.joints.items():
             for joint in ["bed", "head", "crack"] if name == "all" else [name]:
                 joints[joint].updateAttrs(values)

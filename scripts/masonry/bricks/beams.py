@@ -38,10 +38,7 @@ def Beam(
     0.4 %.
 
     :param start: lower left front corner [m]
-    :param length: along its axis [m]
-    :param width: horizontal, across it [m]; ``height``: [m]
-    :param along: ``"x"`` or ``"y"``
-    :param pieces: number of them
+    :param length: along its axis [m]; ``width``: horizontal, across it; ``height``
     :param name: part and kind of its pieces; beams of one name that meet are joined stiffly
     """
     size = (length, width, height) if along == "x" else (width, length, height)
@@ -63,10 +60,8 @@ def Floor(
 
     :param start: lower left front corner [m]
     :param length: along the span, bearing included [m]
-    :param width: across it, of all strips together [m]
-    :param height: of the boxes [m]
-    :param along: direction of the span, ``"x"`` or ``"y"``
-    :param strips: number of them
+    :param width: across it, of all strips together [m]; ``height``: of the boxes
+    :param along: direction of the span
     :param name: part and kind of the strips
     """
     size = (length, width, height) if along == "x" else (width, length, height)

@@ -46,7 +46,7 @@ class _Surface:
 
     :ivar points: (n, 3)
     :ivar faces: tuples of point numbers
-    :ivar digits: decimals of the numbers of the points, of the one that has most; None: bytes
+    :ivar digits: most decimals of the numbers of the points; None: bytes
     """
 
     name: str
@@ -179,7 +179,7 @@ def _readObj(path):
 
 
 def _decimals(words):
-    """Decimals of the numbers of a point, of the one that has most."""
+    """Most decimals of the numbers of a point."""
     return max(-Decimal(word).as_tuple().exponent for word in words)
 
 
@@ -309,7 +309,7 @@ def _readPly(path):
 
 
 def _asciiNumbers(body):
-    """Function that takes the next number, or list of numbers, of a text."""
+    """Function that takes the next number, or list of numbers, of a body."""
     words = iter(body.split())
 
     def take(types):
@@ -323,7 +323,6 @@ def _asciiNumbers(body):
 
 
 def _binaryNumbers(body, order):
-    """Function that takes the next number, or list of numbers, of bytes."""
     at = 0
 
     def take(types):
@@ -362,7 +361,6 @@ _READERS = {
 
 
 def _solids(surface, scale, tolerance, problems, moved):
-    """Corners of each convex solid of a surface."""
     name = surface.name
     if not len(surface.points):
         problems.append(f"{name}: no points")
@@ -485,8 +483,8 @@ def _normal(polygon):
 
 
 def _corners(points, faces, numbers, members, solid, tolerance, problems, moved):
-    """Corners of a convex solid, without points inside a face or an edge; of another one None and
-    a sentence. ``moved`` takes how far corners were moved to make faces plane [m]."""
+    """Corners of a convex solid, without points inside a face or an edge; of another one None and a
+    sentence. ``moved`` takes how far they were moved to make faces plane [m]."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
     exact = FLAT * np.linalg.norm(np.ptp(own, axis=0))

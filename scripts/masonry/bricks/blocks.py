@@ -49,7 +49,6 @@ def sides(value: Any, context: Any = None) -> tuple[float, ...]:
 
 
 def corner(value: Any, context: Any = None) -> tuple[float, ...]:
-    """Validator of a corner of a box, which may be infinitely far away."""
     found = items(value) or ()
     if len(found) != 3 or not all(isNumber(v) and v == v for v in found):
         raise ValueError(f"{shown(value)} must be three numbers [m]")
@@ -126,8 +125,8 @@ class Block:
 class Bricks:
     """An immutable collection of :class:`Block` records. All changes return a new collection.
 
-    ``bricks[3]`` is a block, ``bricks[2:5]`` a collection; ``len()`` and iteration are those of a
-    tuple. A sum renumbers the bricks of the second collection, so that numbers stay unique.
+    ``bricks[3]`` is a block, ``bricks[2:5]`` a collection. A sum renumbers the bricks of the second
+    collection, so that numbers stay unique.
     """
 
     @validated
@@ -174,7 +173,6 @@ class Bricks:
         return max((b.brick for b in self._blocks), default=-1) + 1
 
     def _renumbered(self, first):
-        """The blocks with bricks numbered from `first` in their order."""
         numbers = {}
         for block in self._blocks:
             number = numbers.setdefault(block.brick, first + len(numbers))
@@ -184,12 +182,12 @@ class Bricks:
 
     @functools.cached_property
     def low(self) -> tuple[float, ...]:
-        """Lowest x, y and z of all blocks [m]."""
+        """Lowest x, y and z [m]."""
         return self._extreme(min, "low")
 
     @functools.cached_property
     def high(self) -> tuple[float, ...]:
-        """Highest x, y and z of all blocks [m]."""
+        """Highest x, y and z [m]."""
         return self._extreme(max, "high")
 
     def _extreme(self, choose, name):
@@ -199,12 +197,12 @@ class Bricks:
 
     @property
     def length(self) -> float:
-        """Extent along x [m]."""
+        """Along x [m]."""
         return self.high[0] - self.low[0]
 
     @property
     def height(self) -> float:
-        """Extent along z [m]."""
+        """Along z [m]."""
         return self.high[2] - self.low[2]
 
     @property
@@ -230,8 +228,8 @@ class Bricks:
         axis: Annotated[str, oneOf("x", "y", "z")] = "z",
         about: Point = (0, 0, 0),
     ) -> Bricks:
-        """The blocks turned about an axis ("x", "y" or "z") through a point [m] by the right-hand
-        rule. Quarter turns are exact."""
+        """The blocks turned about an axis through a point [m] by the right-hand rule. Quarter turns
+        are exact."""
         cos, sin = cosSin(degrees / 90, math.radians(degrees))
         k = "xyz".index(axis)
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -246,12 +244,10 @@ class Bricks:
 
     @validated
     def named(self, part: str) -> Bricks:
-        """The blocks as a part of this name."""
         return Bricks(replace(b, part=part) for b in self._blocks)
 
     @validated
     def ofKind(self, kind: str) -> Bricks:
-        """The blocks as blocks of this kind."""
         return Bricks(replace(b, kind=kind) for b in self._blocks)
 
     def _mapped(self, function):
@@ -261,13 +257,12 @@ class Bricks:
 
     @validated
     def where(self, function: Callable[[Block], bool]) -> Bricks:
-        """The blocks for which a function of the :class:`Block` is true."""
+        """The blocks for which a function is true."""
         return Bricks([b for b in self._blocks if function(b)])
 
     @validated
     def within(self, low: Annotated[Numbers, corner], high: Annotated[Numbers, corner]) -> Bricks:
-        """The blocks whose middle lies in a box between two corners [m], which may be
-        infinite."""
+        """The blocks whose middle lies in a box between two corners [m], which may be infinite."""
         if not all(a <= b for a, b in zip(low, high)):
             refuse("within", [f"low corner {low} m must lie below high corner {high} m"])
         return self.where(lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high)))
@@ -360,7 +355,6 @@ class Bricks:
     ) -> list[checks.FreePart]:
         """What no joint covers of faces that look in a direction.
 
-        :param direction: of any length
         :param least: cosine of the largest angle between direction and normal [-]; by default that
             of 45°
         """

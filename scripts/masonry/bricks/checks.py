@@ -81,7 +81,6 @@ def _side(solids, solid, face):
 
 
 def _filled(solids, place, but):
-    """Whether a place lies in a solid other than two given ones."""
     around = (solids.low <= place) & (solids.high >= place)
     for n in np.flatnonzero(around.all(axis=1) & (solids.groupOf >= 0)):
         group, row = solids.of(n)

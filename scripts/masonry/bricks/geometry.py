@@ -146,7 +146,6 @@ class Solids:
         self.diagonal = np.linalg.norm(self.high - self.low, axis=1)
 
     def _sort(self, index, corners):
-        """Group solids with the same number of corners by their faces."""
         while len(index):
             try:
                 batch = SameTopologyBatch(index, corners, hull(corners[0]))
@@ -179,8 +178,8 @@ class Solids:
         return found
 
     def padded(self, name):
-        """``corners``, ``normals`` or ``offsets`` of all in one array; the last one of a solid with
-        fewer than others is repeated."""
+        """``corners``, ``normals`` or ``offsets`` of all in one array, in which the last one of a
+        solid is repeated."""
         values = [getattr(group, name) for group in self.groups]
         numbers = np.arange(max(own.shape[1] for own in values))
         found = np.zeros((self.count, len(numbers), *values[0].shape[2:]))
@@ -200,8 +199,8 @@ class Solids:
     # -- pairs -------------------------------------------------------------------------------------
 
     def nearPairs(self, reach):
-        """Pairs of solids whose bounding boxes are no further apart than the sum of their
-        ``reach`` [m]: arrays of numbers."""
+        """Pairs of solids whose bounding boxes are no further apart than the sum of their ``reach``
+        [m]: arrays of numbers."""
         good = np.flatnonzero(self.groupOf >= 0)
         if len(good) < 2:
             return np.zeros((2, 0), int)
@@ -323,8 +322,8 @@ def measures(polygon, normal):
 
 
 def cutCorners(corners, faces, point, normal, width):
-    """Corners of the parts of a convex solid beyond a plane (along the normal) and below; None for
-    a part without volume. A corner within ``width`` of the plane [m] counts as in it."""
+    """Corners of the parts of a convex solid beyond a plane and below; None for a part without
+    volume. A corner within ``width`` of the plane [m] counts as in it."""
     corners = [tuple(map(float, c)) for c in corners]
     heights = [sum((x - p) * n for x, p, n in zip(c, point, normal)) for c in corners]
     above = [c for c, h in zip(corners, heights) if h >= -width]

@@ -51,12 +51,12 @@ class House(Bricks):
     the next storey.
 
     :param length: along x, measured outside [m]; ``width``: along y. Both are whole units
-    :param storeys: :class:`Storey` records, from below
+    :param storeys: from below
     :param unit: length, thickness and height of a unit, joints included [m]
     :param thickness: of the floors [m]
     :param eccentricity: of the mass of each floor over length and width [-], 0.05 in EN 1998-1: a
         part of the mass stands as a strip on the floor, along the wall
-    :ivar heights: for each storey the height of the section through its piers [m]
+    :ivar heights: of the section through the piers of each storey [m]
     :ivar piers: for each storey a dict from the part to (wall, from where, to where along it [m])
     """
 
@@ -97,7 +97,6 @@ class House(Bricks):
         super().__init__(blocks)
 
     def _named(self, walls, storey, n, z):
-        """The walls of a storey with the names of their piers."""
         openings = [o for side in SIDES for o in getattr(storey, side)]
         low = max((o.z for o in openings), default=0.0) + z
         high = min((o.z + o.height for o in openings), default=storey.height) + z
@@ -158,15 +157,14 @@ class House(Bricks):
         return found
 
     def part(self, name: str) -> Bricks:
-        """The blocks of a part."""
         return self.where(lambda block: block.part == name)
 
     def withFloors(
         self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9
     ) -> Any:
-        """Add the materials of floors and ring beams to the masonry, and return it.
+        """Add the materials of floors and ring beams to the :class:`masonry.materials.Masonry`, and
+        return it.
 
-        :param masonry: :class:`masonry.materials.Masonry`
         :param shear: shear stiffness G t of the floors [N/m]
         :param mass: with live loads [kg/m²], of every floor from below, or one for all
         :param bearing: of the floors, as for ``withFloor``

@@ -129,7 +129,6 @@ def _holes(openings, unit, levels, ends, crossed, problems):
 
 
 def _overlap(a, b, near):
-    """Whether two boxes overlap by more than a length that counts as nothing."""
     inside = lambda low, high: low + near < high
     return all(inside(a[i], b[i + 2]) and inside(b[i], a[i + 2]) for i in (0, 1))
 
@@ -163,7 +162,6 @@ def _without(bricks, hole, near):
 
 
 def _slivers(bricks, holes, unit, levels):
-    """Sentences about cut bricks that are shorter or lower than a quarter."""
     slivers = []
     for brick in bricks:
         box = brick.low[0], brick.low[2], brick.high[0], brick.high[2]
@@ -193,7 +191,6 @@ def _touch(a, b):
 
 
 def _whole(bricks, part):
-    """Refuse a wall in parts."""
     boxes = Bricks(blocksOf(replace(b, split=None) for b in bricks))  # halves hold
     if not len(boxes):
         refuse(part, ["its openings leave nothing of it"])

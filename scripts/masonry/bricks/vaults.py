@@ -84,8 +84,7 @@ def BarrelVault(
 
     :param thickness: of the shell [m]
     :param length: along y [m]
-    :param stones: number of courses
-    :param rows: number of stones along a course
+    :param stones: number of courses; ``rows``: of stones along a course
     :param span: clear span [m]; give this or ``radius`` of the inner surface
     :param angle: at the centre [°], up to 180
     :param staggered: whether odd courses are shifted by half a stone, with half stones at their

@@ -142,9 +142,10 @@ def Corner(
 
     :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units.
         ``length2``: of the return
-    :param openings: of the wall, ``openings2``: of the return; x is measured along each from the
-        outer edge of the corner
-    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
+    :param openings: of the wall, ``openings2``: of the return; x is measured from the outer edge of
+        the corner
+
+    Others are as for :func:`Wall`.
     """
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
     unit, (one, two), levels = _counted("corner", unit, joint, height, courses, [], 1, **sizes)
@@ -178,7 +179,8 @@ def Tee(
         units
     :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer
         face of the wall
-    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
+
+    Others are as for :func:`Wall`.
     """
     problems, long = [], unit[0] + joint
     if unit[1] > 0.75 * long:
@@ -225,7 +227,8 @@ def Room(
     :param length: along x, ``width``: along y, measured outside [m]; whole units, at least 3
     :param front: openings of this wall, as ``right``, ``back`` and ``left``; x is measured along x
         or y from the outer edge of the corner nearer to the origin
-    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
+
+    Others are as for :func:`Wall`.
     """
     problems, long = [], unit[0] + joint
     if unit[1] > long:

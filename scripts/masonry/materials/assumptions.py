@@ -66,7 +66,6 @@ def state(thing: Any, **sources: str) -> Any:
 
 
 def copied(thing: Any) -> Any:
-    """A copy of a material or joint with its note."""
     made = type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
     return state(made, **thing.assumed())
 
@@ -98,8 +97,7 @@ def _things(masonry):
 
 
 def entriesOf(masonry: Any) -> list[dict[str, Any]]:
-    """The entry ``assumed`` of run.json: dicts with ``name``, as ``bed.residualFriction``,
-    ``value``, ``unit`` and ``source``, of properties that have an effect."""
+    """The entry ``assumed`` of run.json, of properties that have an effect."""
     found = []
     for name, thing in _things(masonry):
         sources, counted = thing.assumed(), effective(thing)
@@ -142,7 +140,7 @@ def missing(masonry: Any) -> list[str]:
 def linesOf(
     entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
 ) -> list[str]:
-    """What a scene prints of its entries ``assumed``: lines; ``brief``: their number alone."""
+    """What a scene prints of its entries ``assumed``; ``brief``: their number alone."""
     if not entries:
         return []
     byCode = [entry for entry in entries if entry["by_code"]]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Properties that vary from place to place, for :meth:`masonry.materials.Masonry.vary`. This
-module needs no YADE.
+"""Properties that vary from place to place, for :meth:`masonry.materials.Masonry.vary`. No YADE is
+needed.
 
 Each function returns a function of x, y and z [m] whose value is a factor on a property [-], with
 the mean 1::
@@ -70,8 +70,8 @@ def normal(
     seed: Seed = 0,
     least: Annotated[float, number("", 0, 1, above=True, below=True)] = LEAST,
 ) -> Factor:
-    """Factors that are normally distributed about the mean 1, but not below ``least``. Other
-    parameters: :func:`lognormal`."""
+    """Factors that are normally distributed about the mean 1, but not below ``least``; see
+    :func:`lognormal`."""
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
 
@@ -100,12 +100,8 @@ def parts(text: str) -> tuple[Any, ...]:
 
 
 def read(text: str) -> tuple[list[str], Factor]:
-    """The names of the properties and the function of a field of the option ``--field``.
-
-    :param text: for example
-        ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
-    :raises ValueError: if it is not one
-    """
+    """The names of the properties and the function of a field of ``--field``, as
+    ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``. Raises ValueError."""
     names, kind, cov, length, seed = parts(text)
     return names, KINDS[kind](cov, length, seed)
 

@@ -38,12 +38,8 @@ _varied = matching(
 def withResidual(
     names: Names, joints: Annotated[dict[str, MasonryJoint], dictOf(_slides)]
 ) -> list[str]:
-    """Names of properties, with the residual friction of joints whose friction is among them and
-    has one value.
-
-    :param names: as ``"bed.friction"``
-    :param joints: dict of MasonryJoint by name
-    """
+    """Names of properties, as ``"bed.friction"``, with the residual friction of joints whose
+    friction is among them and has one value."""
     one = [n.partition(".")[0] for n in names if n.endswith(".friction")]
     alike = lambda n: n in joints and joints[n].friction == joints[n].residualFriction
     residual = [f"{n}.residualFriction" for n in one if alike(n)]
@@ -55,7 +51,6 @@ _pieces = matching(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
 def _bearing(value, context=None):
-    """Validator of what is between a beam or a floor and the masonry below."""
     if isinstance(value, str) and value != "fixed":
         raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
     if value is None or isinstance(value, str):
@@ -85,7 +80,6 @@ def withBeam(
     Joints of its name connect its pieces, with the bending stiffness E I and the shear stiffness
     5/6 G A of the beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
 
-    :param beam: its pieces
     :param young: [Pa]; ``poisson``: [-]
     :param density: [kg/m³]
     :param bearing: the joint NAME_bearing between it and masonry: None: the bed joint; a number: a
@@ -116,7 +110,6 @@ def withFloor(
     """Give the properties of a floor of :func:`masonry.bricks.Floor`, which shears elastically in
     its plane. Returns the same masonry.
 
-    :param floor: its strips
     :param shear: shear stiffness G t of its plane [N/m]: a square floor with one edge held moves by
         V / (G t) under a force V along the opposite edge
     :param mass: with what lies on it [kg/m²]
@@ -266,7 +259,7 @@ class Masonry:
         problems at once.
 
         :param settings: list of (name, property, text of the value)
-        :param connectors: ties, springs and fibre layers of the scene by name, or None
+        :param connectors: ties, springs and fibre layers of the scene by name
         """
         made = {name: _OfBeam(name, self) for name in self.stiff if _isBeam(self, name)}
         applySettings({**self.joints, **made, **(connectors or {})}, settings)
@@ -288,8 +281,7 @@ class Masonry:
             change alike. The tensile strength must be at most cohesion over friction everywhere
         :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the
             property [-]; :mod:`masonry.materials.fields` has random ones
-        :param step: values are rounded to steps of this ratio, so that many joints share one and
-            cost no more than uniform ones [-]
+        :param step: values are rounded to steps of this ratio, so that many joints share one [-]
         """
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
@@ -375,7 +367,6 @@ class Masonry:
         return rule
 
     def _changed(self, key, joint, values):
-        """A copy of a joint with other values, made once."""
         if key not in self._made:
             own = copied(joint)
             own.updateAttrs(values)
@@ -398,7 +389,6 @@ class Masonry:
         return "bed" if steep else "head"
 
     def _at(self, name, joint, geom):
-        """A joint with its properties at a place."""
         steps, values, centres = {}, {}, geom.centres
         centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
         for kind, attribute, value, step in self.varied:
@@ -421,11 +411,6 @@ class Masonry:
             raise ValueError(f"vary: at ({place}) m: {error}") from None
 
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
-
-
-def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:
-    """Joints by name; ``brittle``: as Coulomb slip joints, unless they are elastic."""
-    return {j.name: _brittle(j) if brittle else j for j in joints}
 
 
 def _brittle(joint):

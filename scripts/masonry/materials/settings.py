@@ -22,7 +22,6 @@ class Property(NamedTuple):
 
     @property
     def validator(self) -> Callable[..., Any]:
-        """The validator of its values."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 
@@ -37,11 +36,9 @@ class Settable:
         return {name: getattr(self, name) for name in self.known}
 
     def copied(self):
-        """A copy."""
         return copy.copy(self)
 
     def problems(self):
-        """Sentences on values that do not go together."""
         return []
 
     def take(self, values):
@@ -181,7 +178,6 @@ SWITCH = {"on": True, "true": True, "1": True, "off": False, "false": False, "0"
 
 
 def _value(text, example):
-    """The value of a text, of the type of ``example``. Raises ValueError."""
     if isinstance(example, bool):
         if text.lower() not in SWITCH:
             raise ValueError(text)

@@ -11,7 +11,7 @@ from yade.wrapper import MasonryJoint, MasonryMat
 
 from ..arguments import isNumber, number, shown, validated
 from .assumptions import state
-from .kinds import Masonry, Poisson, byName, slipping
+from .kinds import Masonry, Poisson, slipping
 
 
 def calciumSilicate() -> Masonry:
@@ -25,7 +25,6 @@ DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 
 
 def tested(value: Any, context: Any = None) -> Any:
-    """Validator of a vertical load of the tests [kN]."""
     if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
         levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
         raise ValueError(f"{shown(value)} kN was not tested, there are {levels}")
@@ -110,8 +109,7 @@ CRACK_ASSUMED = (
 ).split()
 
 
-@validated
-def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
+def calciumSilicateJoints() -> dict[str, MasonryJoint]:
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
     Pairs of units get the first of support, bed and head that fits. The crack joint, of the halves
@@ -129,8 +127,6 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     With eq. (26) the masonry is stiffer than in table 2: 4079 MPa across its bed joints and 4507
     MPa across its head joints, not 3174 and 2212 MPa. The closure at the compressive strength is
     1.54 mm for the bed joint and 1.21 mm for the head joint.
-
-    :param brittle: whether they are brittle Coulomb slip joints instead
     """
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
     head = MasonryJoint(name="head", jointSet="brick", direction=HEAD_DIRECTION)
@@ -153,7 +149,7 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     for joint in (bed, head):
         state(joint, **dict.fromkeys(CALCIUM_SILICATE_ASSUMED, DECIDED))
     state(crack, **dict.fromkeys(CRACK_ASSUMED, DECIDED))
-    return byName([state(support), bed, head, crack], brittle)
+    return {joint.name: joint for joint in (state(support), bed, head, crack)}
 
 
 def graniteUnit() -> MasonryMat:
@@ -169,9 +165,7 @@ def graniteUnit() -> MasonryMat:
 
 
 @validated
-def dryGraniteJoints(
-    level: Level, height: Course, brittle: bool = False
-) -> dict[str, MasonryJoint]:
+def dryGraniteJoints(level: Level, height: Course) -> dict[str, MasonryJoint]:
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 
     The joints have no tensile strength and no cohesion. With one joint a course, their normal
@@ -182,7 +176,6 @@ def dryGraniteJoints(
 
     :param level: vertical load of the test [kN], a key of DRY_GRANITE_MASONRY
     :param height: of a course [m]
-    :param brittle: whether they are brittle Coulomb slip joints, which are the same here
     """
     young = graniteUnit().young
     stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
@@ -196,7 +189,7 @@ def dryGraniteJoints(
     state(bed, **dict.fromkeys(names, why))
     for joint in (head, support):
         state(joint, **dict.fromkeys(["normalStiffness", *names], f"{why}, like bed"))
-    return byName([support, bed, head], brittle)
+    return {joint.name: joint for joint in (support, bed, head)}
 
 
 def loadingBlock() -> MasonryMat:

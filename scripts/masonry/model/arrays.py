@@ -29,12 +29,8 @@ def _unit(vectors):
 
 def blocksAndJoints() -> dict[str, Any]:
     """The blocks and joints of the scene as they stand now: the arguments of
-    :class:`masonry_limit.Assembly`. Where no block has moved by more than :data:`STOOD`, they are
-    taken as they stood when the joints were made. Open joints are taken as closed, so after
-    supports have moved far the answer is one for other joints.
-
-    :raises Refused: if there are no joints
-    """
+    :class:`masonry_limit.Assembly`. Open joints are taken as closed, so after supports have moved
+    far the answer is one for other joints. Raises Refused if there are no joints."""
     blocks = list(O.bodies)
     numbers = {body.id: number for number, body in enumerate(blocks)}
     joints = [i for i in O.interactions if type(i.geom).__name__ == "MasonryJointGeom"]
@@ -108,7 +104,6 @@ def _links(numbers, place):
 
 
 def _rows(vectors):
-    """Vectors of YADE as a list of (x, y, z)."""
     return [(v[0], v[1], v[2]) for v in vectors]
 
 
@@ -163,7 +158,6 @@ class _Placement:
 
 
 def _strengths(p):
-    """Tensile strength, cohesion, friction, compressive strength, and whether it is elastic."""
     crushing = math.inf
     if p.cap and not p.elastic:
         # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²

@@ -24,7 +24,6 @@ def properties(cls) -> list[dict[str, Any]]:
 
 
 def units(cls) -> dict[str, str]:
-    """Units of the properties of a class of the plugin by name."""
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 

@@ -51,8 +51,7 @@ def connect(
 
     :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the
         choice to direction and joint set
-    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's
-        size, at most 0.01
+    :param tolerance: largest gap or overlap of coincident faces over the smaller block's size [-]
     :param allowGaps: whether blocks that nearly share a face stand apart on purpose
     """
     made = makeJoints(rule, tolerance, allowGaps)
@@ -101,7 +100,6 @@ def makeJoints(
 
 
 def _pairs(tolerance, allowGaps):
-    """Pairs of blocks to join, and the thinnest and the largest block."""
     pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
     for one in O.interactions.all():
         if isinstance(one.geom, MasonryJointGeom):
@@ -133,8 +131,6 @@ def _pairs(tolerance, allowGaps):
 
 
 def _warn(pairs, joints, sizes):
-    """Print warnings of what looks like a mistake: other units, blocks without joints, properties
-    without effect."""
     (thin, thickness), (large, size) = sizes
     if thickness < 1e-3:
         say(f"warning: body {thin} is {thickness:g} m thick: are corners in m?")
@@ -171,7 +167,6 @@ def _warn(pairs, joints, sizes):
 
 
 def _warnOfUnits(things):
-    """Warn of properties of materials and joints that are usual in another unit."""
     for thing in things:
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
         for p in properties(type(thing)):
@@ -204,7 +199,6 @@ def _warnOfIdle(joints):
 
 
 def _warnOfZones(zones, bodies):
-    """Warn of zones without bodies, and of bodies that divisions do not divide."""
     if not zones.bodies:
         say("warning: MasonryZones has no bodies")
     # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the

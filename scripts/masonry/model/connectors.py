@@ -30,7 +30,6 @@ class Connectors:
                 one.engine, one.number = self.engines[kind], number
 
     def grow(self, share):
-        """Tighten connectors to a share of their prestress [-]."""
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)
 

@@ -53,7 +53,7 @@ def engines(
     ``masonry.engine(label)`` finds them: ``joints`` the MasonryJointLoop, ``energy`` the
     MasonryEnergy, ``integrator`` the MasonryIntegrator; loads and zones keep their own labels.
 
-    :param joints: MasonryJoint objects; a pair of units takes the first that fits
+    :param joints: a pair of units takes the first that fits
     :param damping: damping constant of rigid units [-], 0 for motion in real time; 0.8 in eq. (3)
         of the paper (yade_plugin/law/README.md)
     :param gravity: [m/s²]
@@ -65,18 +65,16 @@ def engines(
     :param rows: rows of subcontacts across a joint; None or 0: one where its blocks can only turn
         about an axis in the joint when it is made, else three. So block degrees of freedom before
         ``connect()``, and free none later. Two rows make a joint in space three times too stiff out
-        of its plane. See ``Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom``
+        of its plane
     :param inPlane: whether rows follow each other along y, whatever the freedom of the blocks
-    :param loads: MasonryLoad engines
-    :param zones: MasonryZones of the deformable units, if there are any
+    :param zones: of the deformable units
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of
         MasonryJointLoop and MasonryIntegrator
     :param dampingKind: ``"combined"`` or ``"local"``; None: combined, with functors local, the only
         one of NewtonIntegrator. Combined damping takes energy from vibration and hardly brakes a
         steady motion. Local damping, eq. (3) of the paper, brakes steady motion, so a mechanism
         that turns slowly seems stronger than it is
-    :param connectors: MasonryTies and MasonrySprings engines
-    :param contacts: MasonryContacts of the blocks that no joint connects, if there are some
+    :param contacts: of the blocks that no joint connects
     """
     if functors and dampingKind == "combined":
         raise ValueError("engines: dampingKind must be local with functors")

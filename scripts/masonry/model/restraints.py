@@ -65,7 +65,6 @@ class Supports:
             yield area / whole, _Point(brick, middle)
 
     def holdAlso(self, target, axes):
-        """Hold a target along more axes."""
         if target not in self.held:
             self.held.append(target)
             self.freeMass -= O.bodies[target.body].state.mass
@@ -86,7 +85,6 @@ class Supports:
         return self._loadsOn(target) - self.supportedBy(target)
 
     def _loadsOn(self, target):
-        """Force of loads and drives on a target [N]."""
         loads = self.structure.loading.loads.values()
         return sum((forceOn(load, target.body) for load in loads), Vector3.Zero)
 
@@ -172,8 +170,8 @@ class Supports:
 
     def imbalance(self):
         """The force that inertia takes over the largest reaction of a support, of the axis along
-        which that is most [-]; axes along which no reaction is above :data:`SMALL_REACTION` of the
-        largest do not count."""
+        which that is most [-]; axes without a reaction above :data:`SMALL_REACTION` of the largest
+        do not count."""
         of = lambda t: self.supportedBy(t) + self.structure.connectors.onSpringsOf(t)
         reactions, inertia = [of(target) for target in self.held], self.applied() + self.carried()
         largest = [max((abs(one[i]) for one in reactions), default=0.0) for i in range(3)]

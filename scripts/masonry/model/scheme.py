@@ -58,8 +58,7 @@ class Scheme:
             self.zones.massScaling = scaling
 
     def trueMasses(self, stage):
-        """Have true masses for a stage in real time, and say so; :meth:`chooseTimeStep` follows
-        it."""
+        """Have true masses for a stage in real time; :meth:`chooseTimeStep` follows it."""
         if self.zones and self.massScaling:
             say(
                 f"note: {stage} runs in real time with true masses, without --mass-scaling"

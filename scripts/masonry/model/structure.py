@@ -49,7 +49,6 @@ class Structure:
     # -- building ----------------------------------------------------------------------------------
 
     def build(self, loadingBlock):
-        """Build the scene, with a MasonryMat of the platens."""
         threads.beginScene(host=self.description.functors)
         O.reset()
         loadingBlock.density *= self.args.density_scaling
@@ -152,7 +151,6 @@ class Structure:
         self.energy = engine("energy")
 
     def _joinRecords(self):
-        """Find the recorded joints and those of sections."""
         pairs = {frozenset((i.id1, i.id2)): i for i in self.interactions}
         for joint in self.description.joints:
             joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
@@ -219,7 +217,6 @@ class Structure:
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 
     def state(self):
-        """What stages have set, beside what YADE keeps, for JSON."""
         return {
             **self.loading.state(),
             "held": {target.name: target.freedom for target in self.supports.held},
@@ -230,7 +227,6 @@ class Structure:
         }
 
     def putState(self, state):
-        """Take a state of :meth:`state`. Raises KeyError for unknown targets and loads."""
         targets = self.description.targets
         self.loading.putState(state)
         self.supports.held = [targets[name] for name in state["held"]]

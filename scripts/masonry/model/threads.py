@@ -74,8 +74,8 @@ def beginScene(host):
 
 
 def used():
-    """Steps on each number of threads: dicts with ``threads``, ``steps`` and
-    ``microseconds_per_step``, the mean time of their loops over joints and bodies [µs] or None."""
+    """Steps on each number of threads; ``microseconds_per_step`` is the mean time of their loops
+    over joints and bodies."""
     return [
         {
             "threads": r["threads"],

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The columns of curve.csv: name, unit, meaning and value of each.
-
-A column of every target is added to :meth:`masonry.scene.targets.Target.columns`, one of every
-recorded joint to :data:`masonry.scene.targets.OF_JOINTS`, any other one here. ``scene.column`` adds
-one from a script.
-"""
+"""The columns of curve.csv: name, unit, meaning and value of each. Those of a target are in
+:meth:`masonry.scene.targets.Target.columns`, those of a recorded joint in
+:data:`masonry.scene.targets.OF_JOINTS`. ``scene.column`` adds one from a script."""
 
 from dataclasses import dataclass
 from typing import Callable
@@ -31,12 +28,12 @@ class Column:
 
     @property
     def head(self):
-        """The name with its unit, as in the first line of curve.csv."""
+        """As in the first line of curve.csv."""
         return self.name if self.unit in (None, "-") else f"{self.name}_{self.unit}"
 
     @property
     def explanation(self):
-        """The meaning with its unit, as in run.json."""
+        """As in run.json."""
         return self.meaning if self.unit is None else f"{self.meaning} [{self.unit}]"
 
 
@@ -46,8 +43,8 @@ class Reading:
     - ``time`` since the scene was built [s]
     - ``along``, ``up``: displacement of the followed point since the push or load began [m]
     - ``rotation`` of the followed block, about y in a plane, else its angle [rad]
-    - ``baseShear``: force of the structure on all that is held, along the push or load [N]
-    - ``topShear``: force that drives the pushed point [N]
+    - ``baseShear``: force of the structure on all that is held, along the push or load;
+      ``topShear``: that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number, from 1, and displacement [mm] of the point of a history that the drive is
       going to

@@ -10,6 +10,8 @@ from typing import Any, Sequence
 
 import numpy as np
 
+Grid = dict[str, np.ndarray]  # as layOut gives it
+Entries = dict[str, Any]
 CRACK = 0.05e-3  # opening or slide of a cracked joint [m]
 CRUSHED = 0.5e-3  # plastic closure of a crushed joint [m]
 DAMAGED = 0.05  # damage in tension or shear of a cracked joint [-]
@@ -18,7 +20,7 @@ NEAR = 3  # courses to either side of the diagonal that are near it
 OUTER = 2  # courses at base and top that do not count for the diagonal, as they crack by rocking
 
 
-def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def widths(frame: Entries) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far every subcontact is open or slid.
 
     :returns: three arrays: the larger of opening and slide [m]; whether it is open, by more than
@@ -66,8 +68,7 @@ def damageClass(width: float) -> int:
     return sum(width > limit for limit in CLASSES)
 
 
-def crushed(frame: dict[str, Any]) -> np.ndarray:
-    """Which subcontacts are crushed."""
+def crushed(frame: Entries) -> np.ndarray:
     return frame["crushing"] > CRUSHED
 
 
@@ -85,9 +86,7 @@ NEEDED = [
 ]
 
 
-def layOut(
-    frame: dict[str, Any], wall: dict[str, Any]
-) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+def layOut(frame: Entries, wall: Entries) -> tuple[Entries, Grid]:
     """Joints of a frame on the grid of the brickwork.
 
     :param wall: the entry ``wall`` of run.json
@@ -192,7 +191,7 @@ def narrowestBand(positions: np.ndarray, weights: np.ndarray, share: float = 0.5
     return float((positions[ends[starts]] - positions[starts]).min())
 
 
-def diagonal(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict[str, Any]:
+def diagonal(bed: Grid, upright: Grid) -> Entries:
     """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`. A number without
     inner joints (outside the two lowest and two highest courses), or without their energy, is left
     out.
@@ -226,7 +225,7 @@ def diagonal(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict
     return numbers
 
 
-def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
+def flexure(bed: Grid) -> Entries:
     """Numbers of the flexural cracks in the lower half of the wall (base) and in the upper one
     (top), which enter a wall at the ends of its bed joints.
 
@@ -246,7 +245,7 @@ def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     return numbers
 
 
-def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
+def crushing(bed: Grid) -> Entries:
     """Numbers of crushing in the bed joints.
 
     - crushed_volume_cm3: integral of the plastic closure
@@ -266,7 +265,7 @@ def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     }
 
 
-def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
+def sliding(bed: Grid) -> Entries:
     """Numbers of the bed joint, from side to side of the wall, with most energy lost in shear, also
     of those to the support and to the loading block.
 
@@ -285,8 +284,8 @@ def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     }
 
 
-def patternNumbers(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as in :func:`layOut`."""
+def patternNumbers(bed: Grid, upright: Grid) -> Entries:
+    """Numbers of the crack pattern of a wall, of :func:`layOut`."""
     found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
     return {name: np.asarray(value).item() for name, value in found.items()}
 
@@ -320,7 +319,7 @@ MEASURED = {
 }
 
 
-def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:
+def pattern(frame: Entries, wall: Entries, looped: bool = False) -> Entries:
     """Numbers of the crack pattern of a wall, seen from the side from which it is pushed to the
     right; ``frame``, with the arrays NEEDED, and ``wall`` as in :func:`layOut`.
 
@@ -343,8 +342,8 @@ SLID = 0.9, 0.5
 
 
 def failureMode(
-    numbers: dict[str, Any],
-    wall: dict[str, Any],
+    numbers: Entries,
+    wall: Entries,
     grows: bool = False,
     lost: bool = False,
 ) -> str:
@@ -385,8 +384,7 @@ def failureMode(
     return "partial cracking" if cracked else "other" if lost else "none"
 
 
-def mirrored(joints: dict[str, Any]) -> dict[str, Any]:
-    """The joints of :func:`layOut` of a wall seen from behind."""
+def mirrored(joints: Entries) -> Entries:
     return {
         name: mirrored(values) if name == "beds" else values[:, ::-1]
         for name, values in joints.items()

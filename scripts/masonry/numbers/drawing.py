@@ -51,7 +51,6 @@ def finish(axes, x, y, **legend):
 
 
 def save(figure, path, dpi):
-    """Write a picture, whole or not at all."""
     kind = os.path.splitext(path)[1][1:]
     with replaced(path, "wb") as file:
         figure.savefig(file, dpi=dpi, format=kind)
@@ -70,8 +69,7 @@ def svg(figure, name):
 
 
 def placesOn(figure, points):
-    """Pairs of x and y in the first axes of a figure in the units of its :func:`svg`: a text "x,y
-    x,y"."""
+    """Points of the first axes of a figure in the units of its :func:`svg`: a text "x,y x,y"."""
     if not points:
         return ""
     axes = figure.axes[0]

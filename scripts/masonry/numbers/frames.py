@@ -56,11 +56,9 @@ def readFrame(
     directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None
 ) -> dict[str, Any]:
     """A frame as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data array.
+    Raises Refused if there is no such frame, or if its file is damaged.
 
-    :param kind: ``blocks``, ``joints`` or ``connectors``
-    :param number: of the frame, from 0; negative numbers count from the end
     :param names: of the arrays that are needed, ``points`` and ``cells`` among them; None: all
-    :raises Refused: if there is no such frame, or if its file is damaged
     """
     return _read(_pathOf(directory, kind, number), lambda root: _frame(root, names))
 
@@ -159,7 +157,6 @@ def _newFaces(cells):
 
 
 def _opened(root):
-    """The piece of a file, and a function that reads its arrays."""
     form = root.get("compressor"), root.get("byte_order")
     if form != ("vtkZLibDataCompressor", "LittleEndian"):
         raise ValueError("it was not written by MasonryVtkRecorder")

@@ -95,7 +95,7 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
 
 
 def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> list[HalfCycle]:
-    """Excursions to alternate sides that go beyond the threshold: a list of :class:`HalfCycle`.
+    """Excursions to alternate sides that go beyond the threshold.
 
     A half cycle ends at the last passage through zero before the displacement goes beyond the
     threshold on the other side. The first one is complete if the curve begins within the threshold
@@ -205,10 +205,7 @@ def residualDisplacement(
 def cycles(
     displacement: Numbers, force: Numbers, threshold: float, zero: float = 0.0
 ) -> list[Cycle]:
-    """The cycles of a curve: pairs of complete half cycles from the first one on.
-
-    :param zero: as in :func:`halfCycles`
-    """
+    """The cycles of a curve: pairs of complete half cycles from the first one on."""
     moved, force = _curve(displacement, force)
     halves = [h for h in halfCycles(moved, threshold, zero) if h.complete]
     # a residual displacement is looked for up to the end of the next swing to the other side

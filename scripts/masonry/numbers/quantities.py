@@ -2,12 +2,10 @@
 """The numbers that a run answers with: one list, which run.json and its documentation, the
 terminal, the report, notebooks, studies and capacity read.
 
-To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`. Its function finds it from a
-:class:`RunData`, which a run has at its end and its folder has later, so both give the same number.
-
-A *push* below is the last one of the run, with those before it with whose curve it goes on
-(``continued``). Forces along it are at its two ends: those of all supports (``base_shear_kN``) and
-that of the drive (``top_shear_kN``).
+The function of a :class:`Quantity` finds it from a :class:`RunData`, which a run has at its end and
+its folder has later, so both give the same number. A *push* below is the last one of the run, with
+those before it with whose curve it goes on (``continued``). Forces along it are at its two ends:
+those of all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
 """
 
 import math
@@ -62,7 +60,6 @@ class Number(NamedTuple):
     note: str = ""  #: what the number does not say, or why there is none
 
     def entry(self) -> dict[str, Any]:
-        """The number as an entry of a JSON file."""
         return self._asdict()
 
 
@@ -88,13 +85,11 @@ class Quantity:
 
     @property
     def unit(self) -> str:
-        """``"-"`` if it has none."""
         ends = lambda unit: unit.replace("/", "_per_").replace("²", "2").replace("³", "3")
         found = (unit for unit in UNITS if self.key.endswith(f"_{ends(unit)}"))
         return self.ownUnit or next(found, "-")
 
     def shown(self, value):
-        """The number as it is shown."""
         unit = "%" if self.share else self.unit
         value = 100 * value if self.share else value
         return Number(self.name, value, unit, self.meaning, f"run.json: {self.key}")
@@ -746,8 +741,8 @@ def measures(run):
 def headline(run, end=False, grows=False):
     """Peak and bound of a push in a line, from the entries of run.json; empty without a push.
 
-    :param end: whether the force at the end is in it, not the bound; ``grows``: whether it has no
-        peak, because it still grows there
+    :param end: whether the force at the end is in it, not the bound
+    :param grows: whether it has no peak, because it still grows there
     """
     at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
     keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")

@@ -12,6 +12,5 @@
 - :mod:`masonry.run.option_table`: the options that all scenes share; :mod:`masonry.run.presets`:
   those that trade accuracy for time; :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
-- :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in
-  ``yade.plot``
+- :mod:`masonry.run.progress`: a run on the terminal
 """

@@ -2,16 +2,15 @@
 """``--accuracy P``: a push whose peak and work are known within P percent, by the cheapest runs
 that show it.
 
-Cheaper runs of the same scene show how much its numbers depend on rate, mesh, points, block model
-and chance. So these companions of the cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`
-are run first, in processes of their own, on all cores. Their differences, and what
-validation/accuracy has measured of that fidelity, add up to a half-width. If it is too large, the
-next fidelity follows. The scene then goes on with the options of the one that was chosen.
+Cheaper runs of the same scene, its companions, show how much its numbers depend on rate, mesh,
+points, block model and chance. Those of the cheapest fidelity of
+:data:`masonry.run.presets.FIDELITIES` are run first, in processes of their own, on all cores. Their
+differences, and what validation/accuracy has measured of that fidelity, add up to a half-width. If
+it is too large, the next fidelity follows. The scene then goes on with the options of the one that
+was chosen.
 
-Companions are in the folder ``accuracy`` of the results, one a folder. A run that was interrupted
-and is started again with the same words takes those that are over.
-
-This module needs no YADE.
+Companions are in the folder ``accuracy`` of the results. A run that was interrupted and is started
+again with the same words takes those that are over. No YADE is needed.
 """
 
 import contextlib
@@ -63,7 +62,6 @@ def shown(source, values, scale):
     """What a source of error changes, over a scale [-]; None if a run of it is missing.
 
     :param values: of the runs that are there, by name
-    :param scale: the value of the run that is judged
     """
     if any(name not in values for name in source.runs):
         return None
@@ -81,7 +79,7 @@ def halfWidth(number, quantity, values, scale):
     """Half the width of the interval of a quantity, over a scale [-], and its parts by their names.
 
     :param number: of the fidelity in :data:`masonry.run.presets.FIDELITIES`
-    :param values: of the runs that are there by name; the run itself is
+    :param values: of the runs that are there by name, the run itself as
         :data:`masonry.run.presets.MAIN`
     """
     fidelity = FIDELITIES[number]
@@ -120,7 +118,6 @@ class AuxiliaryRuns:
         self.percent = self.fidelity = None  # what was asked for [%], what was chosen
 
     def folderOf(self, name):
-        """The folder of results of a companion."""
         plain = "".join(c if c.isalnum() or c == "." else "_" for c in name)
         return os.path.join(self.folder, plain.replace("__", "_"))
 
@@ -167,7 +164,6 @@ class AuxiliaryRuns:
             os.remove(os.path.join(self.folder, PLAN))
 
     def read(self):
-        """Read the numbers of all companions that are over."""
         for name in COMPANIONS:
             self._take(name)
 
@@ -187,7 +183,6 @@ class AuxiliaryRuns:
         return True
 
     def valuesOf(self, quantity):
-        """A quantity of all runs that are over, by their names."""
         return {name: numbers[quantity] for name, numbers in self.numbers.items()}
 
     def fail(self, note, trace):
@@ -196,10 +191,8 @@ class AuxiliaryRuns:
         addToLog(self.folder, f"{note}\n{trace}\n")
 
     def run(self, names):
-        """Run companions that are not over yet, as many at a time as there are cores.
-
-        :raises Refused: with what a companion said, if it could not be run
-        """
+        """Run companions that are not over yet, as many at a time as there are cores. Raises
+        Refused with what a companion said."""
         due = [name for name in names if name not in self.numbers]
         background.carryOut(due, self._start, self._ended, len(os.sched_getaffinity(0)))
 
@@ -257,7 +250,7 @@ class AuxiliaryRuns:
                 break
 
     def report(self, run):
-        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside
+        """The entry ``accuracy`` of run.json for the numbers of a run, and the half-widths beside
         the values."""
         number = FIDELITIES.index(self.fidelity)
         found, entries = [], {}
@@ -293,8 +286,7 @@ class AuxiliaryRuns:
 
 
 def answers(entry):
-    """The entry ``accuracy`` of run.json as answers of the push: dicts with ``name``, ``unit``,
-    ``value``, ``uncertainty``, ``how``."""
+    """The entry ``accuracy`` of run.json as answers of the push."""
     lacks = f". It does not cover {entry['not_covered']}"
     return [
         {n: q[n] for n in ("name", "unit", "value")}
@@ -331,8 +323,8 @@ def ask(name, args, script, words):
     that was chosen.
 
     :param args: the options of the run, which are changed
-    :param script: path of the script of the scene, or None if it has other options than those of
-        the command line
+    :param script: path of the script of the scene, or None if it has other options than the command
+        line
     :returns: :class:`AuxiliaryRuns`, or None if there are no companions or they have failed
     :raises Refused: if it means nothing here
     """

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs
-no YADE.
+"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. No YADE is needed.
 
 ``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the
 scene by their names, with underscores for dashes, and properties of joints. Values are written as
@@ -12,8 +11,8 @@ in Python, without blanks::
 - an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the
   row before
 - ``record``: a path that is not absolute begins at the folder of the table
-- ``JOINT.PROPERTY``: as ``--set``; those that have one value are joined by ``+``
-- ``field:JOINT.PROPERTY``: as ``--field``; those that vary alike are joined by ``+``
+- ``JOINT.PROPERTY``: as ``--set``, and ``field:JOINT.PROPERTY``: as ``--field``; those that have
+  one value, or vary alike, are joined by ``+``
 - ``description``: of the results, in the folder ``rows/DESCRIPTION`` beside the table
 
 A row that was run to its end is not run again. One that was stopped goes on from its checkpoint,
@@ -64,7 +63,7 @@ def readTable(path):
 
 
 def value(text):
-    """The value of a text of a table; what is no value of Python is the text itself."""
+    """The value of a text of a table, or the text itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -89,14 +88,6 @@ def optionWords(row):
     return words
 
 
-def isColumn(name):
-    """Whether a column of a study can have this name: an option, or properties of joints with one
-    value or field. ``!EXEC`` and the like are commands of yade-batch."""
-    names = name.removeprefix(FIELD).split("+")
-    fits = lambda one: re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", one, re.ASCII)
-    return all(map(fits, names)) and not OWN.intersection(names)
-
-
 def place(text):
     """Path of the table and number of the line of :data:`VARIABLE`. Raises Refused."""
     path, _, line = text.rpartition(":")
@@ -114,18 +105,16 @@ def beside(path):
 
 
 def named(number):
-    """The name of a row of a study, from its number, from 1."""
     return f"{number:04d}"
 
 
 def folder(path, row, line):
-    """The folder of the results of a row."""
     name = nameOf(row, f"line_{line}")
     return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
 
 
 def nameOf(row, default):
-    """The name of a row, which is that of a folder; ``default`` if it has no description."""
+    """The name of a row, which is that of a folder."""
     return row.get("description", default).replace("/", "_").strip("'\"")
 
 
@@ -140,10 +129,7 @@ def ended(directory):
 
 def present():
     """The words of the command line of the row that ``yade-batch`` runs in this process, or None.
-
-    :raises Done: if the row was run to its end
-    :raises Refused: if there is no such row
-    """
+    Raises Refused, or Done if the row was run to its end."""
     text = os.environ.get(VARIABLE)
     if not text:
         return None

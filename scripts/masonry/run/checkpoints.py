@@ -80,8 +80,7 @@ def loadCheckpoint(path: FilePath) -> Any:
 
 @validated
 def readCheckpoint(path: FilePath) -> Any:
-    """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what
-    :func:`loadCheckpoint` raises."""
+    """The ``extra`` of a checkpoint alone. Raises what :func:`loadCheckpoint` raises."""
     return readState(path)[1]
 
 
@@ -113,7 +112,7 @@ def record(cls):
 
 
 def contentsOf(memory):
-    """The values of a memory by their names, as JSON can hold them, in a new dict."""
+    """The values of a memory by their names, as JSON can hold them."""
     of = lambda value: contentsOf(value) if is_dataclass(value) else value
     return {name: of(value) for name, value in vars(memory).items()}
 
@@ -129,13 +128,12 @@ def restored(example, values):
 
 
 def compareNames(values, example):
-    """Refuse entries of a checkpoint that have other names than in this version of the plugin."""
+    """Refuse entries of a checkpoint that have other names than in this version."""
     if unlike := values.keys() ^ example.keys():
         raise otherVersion(f"its {', '.join(sorted(unlike))}")
 
 
 def otherVersion(why):
-    """The refusal of a checkpoint that this version of the plugin does not leave."""
     return NotResumed(f"--resume: of another version of the plugin: {why}")
 
 
@@ -154,7 +152,6 @@ def stateOf(scene):
 
 
 def putState(scene, state):
-    """Give a scene a state of :func:`stateOf`."""
     scene.model.putState(state["model"])
     scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
     pushed = state["pushed"]
@@ -175,7 +172,6 @@ class SceneState:
         return {"now": stateOf(self._scene), "atRest": atRest, **of}
 
     def put(self, state):
-        """Give the scene the state of a checkpoint."""
         putState(self._scene, state)
         self.isRestored = True
 
@@ -286,8 +282,8 @@ class Saved:
         vars(self).update(saved)
 
     def runState(self, name, width):
-        """How far the run of a scene had come, whose rows have so many columns: a
-        :class:`RunState`. Raises NotResumed."""
+        """How far the run of a scene had come, whose rows have ``width`` columns. Raises
+        NotResumed."""
         if self.scene != name:
             raise NotResumed(
                 f"--resume: {self.directory} holds a run of {self.scene}, this is {name}"

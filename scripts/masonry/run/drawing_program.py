@@ -26,8 +26,8 @@ class DrawingProgram:
 
     def draw(self, directory):
         """Wait until the figures of a run that has ended are drawn and its report is written.
+        Returns what has failed unexpectedly: pairs of a note and a traceback.
 
-        :returns: what has failed unexpectedly: pairs of a note and a traceback
         :raises Unwritable: if disk or memory is full
         :raises masonry.background.Failed: if the program has ended before its time
         """

@@ -125,8 +125,7 @@ def _beforeSteps(run, error):
 
 
 def _keepEarlier(run, error):
-    """End without results: those of an earlier run stay. Returns whether the error is dealt
-    with."""
+    """End without results: those of an earlier run stay. Returns as :func:`_beforeSteps`."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
         f"note: {'interrupted' if run.status == 130 else 'ended'} before there was a row: nothing"
@@ -159,8 +158,8 @@ def _finish(run, scene):
 
 
 def _unlessInterrupted(run, draw, lacking):
-    """Draw unless the user interrupts it; then a sentence says what is lacking. Returns what
-    ``draw`` does."""
+    """Return what ``draw`` does, unless the user interrupts it: then a sentence says what is
+    lacking."""
     try:
         with run.breakable():
             return draw(run.results.directory)
@@ -212,7 +211,6 @@ def _describe(run, scene):
 
 
 def _options(run):
-    """The options, with a history as the user wrote it."""
     options = {name: v for name, v in vars(run.args).items() if name != "saved"}
     if options.get("history"):
         options["history"] = options["history"]["text"]
@@ -220,7 +218,6 @@ def _options(run):
 
 
 def _warnings(run, scene):
-    """Sentences on what the numbers of a run suffer from, for run.json and the terminal."""
     entries = run.results.run
     shares = {
         "energy_balance_error": "the energy balance is off by",

@@ -37,8 +37,8 @@ class Frames:
             self._recorder.collect()
 
     def add(self, final):
-        """Write a frame of the scene as it stands, after :meth:`wait`; the ``final`` one is whole
-        when this returns. Raises Unwritable."""
+        """Write a frame, after :meth:`wait`; the ``final`` one is whole when this returns. Raises
+        Unwritable."""
         self._recorder.times = self._state.frames
         if self._took > SLOW_FRAME and not final:
             self._task = Task(lambda: [self._write()])
@@ -56,8 +56,8 @@ class Frames:
             raise Unwritable(str(error)) from None
 
     def wait(self):
-        """Wait until the frame is whole that is written beside the run. Raises Unwritable: then
-        the frame is lost."""
+        """Wait until the frame that is written beside the run is whole. Raises Unwritable: then it
+        is lost."""
         task, self._task = self._task, None
         try:
             if task:

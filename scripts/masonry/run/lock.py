@@ -149,7 +149,6 @@ def _isGone(record):
 
 
 def _object(data):
-    """The JSON object in some bytes, or an empty one."""
     try:
         record = json.loads(data)
     except ValueError:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The options that all scenes share: one row an option. The command line, ``--help``, the manual,
 keywords of ``Scene``, presets, the check of a run that is resumed, studies and run.json read these
-rows. This module needs no YADE."""
+rows. No YADE is needed."""
 
 import argparse
 import contextlib
@@ -28,12 +28,10 @@ class Option:
     meaning: str = ""  # what --help says
 
     def means(self, meaning: str) -> "Option":
-        """The same with what ``--help`` says."""
         return replace(self, meaning=meaning)
 
     @property
     def unit(self) -> str:
-        """Its unit, or an empty text."""
         return getattr(self.validator, "unit", "")
 
     def addTo(self, parser: Any, read: Any = None) -> None:
@@ -100,7 +98,6 @@ vars(massScaling).update(of=float)
 
 
 def folder(value: Any, context: Any = None) -> str:
-    """Validator of the name of a folder or a file."""
     if not (isinstance(value, str) and value.strip()):
         raise ValueError("must not be empty")
     try:

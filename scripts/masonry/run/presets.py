@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Presets of options that trade accuracy for time, and what ``fast`` promises; and the fidelities
-from which ``--accuracy`` chooses. This module needs no YADE."""
+from which ``--accuracy`` chooses. No YADE is needed."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -55,7 +55,6 @@ class Fidelity:
 
     name: str  # as the terminal says it
     options: dict  # others of CHOSEN have their defaults
-    cost: float  # wall-clock time of a run over that of the first fidelity, about [-]
     error: dict  # by quantity, against a fine and slow run, beside the sources [-]
     sources: tuple  # of the errors that companions show
 
@@ -95,7 +94,6 @@ FIDELITIES = (
     Fidelity(
         "rigid units, 50 mm/s",
         {"rate": 50.0},
-        1,
         {"peak": 0.005, "work": 0.005},
         (
             _CHANCE[0],
@@ -107,7 +105,6 @@ FIDELITIES = (
     Fidelity(
         "deformable units of one cell, 50 mm/s",
         {**_ONE, "rate": 50.0},
-        6,
         {"peak": 0.006, "work": 0.006},
         (
             _CHANCE[1],
@@ -119,7 +116,6 @@ FIDELITIES = (
     Fidelity(
         "deformable units of two by two cells, 50 mm/s",
         {**_TWO, "rate": 50.0},
-        18,
         {"peak": 0.005, "work": 0.005},
         (
             _CHANCE[1],
@@ -130,7 +126,6 @@ FIDELITIES = (
     Fidelity(
         "deformable units of three by three cells, 50 mm/s",
         {**_THREE, "rate": 50.0},
-        45,
         {"peak": 0.004, "work": 0.004},
         (_CHANCE[1], _RATE, Source("mesh", ("two cells, 100 mm/s", MAIN), 0.5)),
     ),
@@ -165,7 +160,7 @@ def outsideOf(properties):
 def presetOf(args, properties):
     """What run.json says of the preset: None without one, or a dict with its ``name``; the
     ``overrides``, options given beside it; ``outside``, sentences on what was not measured; and
-    ``promise``, which is None if there are any of both, else :data:`PROMISE`."""
+    ``promise``, :data:`PROMISE`, or None if there are any of both."""
     if not args.preset:
         return None
     outside = []

@@ -24,8 +24,8 @@ class Progress:
         """Show a stage, if it is time to.
 
         :param fraction: how much of the stage is done, 0 to 1 [-]
-        :param detail: function without arguments that gives the text, if it is shown
-        :param stepsPerSecond: time steps in a second of wall-clock time; None: there are none
+        :param detail: function that gives the text, if it is shown
+        :param stepsPerSecond: time steps in a second of wall-clock time, or None
         :param final: whether the stage ends here; this is always shown
         """
         now = time.perf_counter()

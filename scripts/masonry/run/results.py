@@ -1,62 +1,58 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The files that a run leaves in its folder, and how to read them again. This module needs no YADE.
+"""The files that a run leaves in its folder, and how to read them again. No YADE is needed.
 
-``curve.csv`` has a row a reading; :mod:`masonry.numbers.columns` says what is in each column.
-
-``run.json`` has these entries, with SI units where a name has none; what does not apply is left out
-or None:
+``curve.csv`` has a row a reading. ``run.json`` has these entries, with SI units where a name has
+none; what does not apply is left out or None:
 
 - ``scene``: its name; ``title``: of figures
-- ``options``: those of the command line; ``option_units``: units of those that have one
+- ``options``: those of the command line; ``option_units``
 - ``preset``: :func:`masonry.run.presets.presetOf`; ``preset_note``: it as a sentence
 - ``columns``: what each column of curve.csv means
-- ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by
-  property; ``joint_meanings``: what each property means; ``effective_properties``: by
-  kind of joint, the numbers among them that have an effect
+- ``joints``: the properties of every kind of joint; ``joint_units``, ``joint_meanings``: by
+  property; ``effective_properties``: by kind of joint, the numbers among them that have an effect
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties that were not given: ``name``, as ``bed.residualFriction``, ``value``,
-  ``unit``, ``source`` and ``by_code``. The name ``support`` says that these joints take the bed
-  joint
+  ``unit``, ``source`` and ``by_code``; of the name ``support``: these joints take the bed joint
 - ``units``: number of bricks or half bricks; ``nodes``: of deformable units; ``joint_count``,
-  ``joints_by_kind``: of joints between blocks; ``subcontacts``: of points of joints at the
-  beginning; ``refined_joints``: of joints of rigid units that got more points
+  ``joints_by_kind``; ``subcontacts``: points of joints at the beginning; ``refined_joints``: joints
+  of rigid units that got more points
 - ``versions``, ``commit`` of the plugin, ``host``, ``date``: in UTC, when the run ended;
   ``threads``: how many steps may use; ``steps_by_threads``: :func:`masonry.model.threads.used`, of
   the process that ended the run
 - ``stages``: of every ``stage`` its ``steps``, their ``seconds`` of wall-clock time, the number
   ``first_row`` of its first row of curve.csv, from 0, ``load``: its kind, its name, that of the
-  load back, and the control of a push if it is not what is pushed, and ``continued``: whether it
-  is a push that goes on with the curve of the one before
+  load back, and the control of a push if it is not what is pushed, and ``continued``: whether it is
+  a push that goes on with the curve of the one before
 - ``script``: the commands with their arguments, also those that were left out; a long list of
   numbers is a text
 - ``built``, ``held_and_loaded``: pairs of texts on the structure before the first stage; not with
   --lean
 - ``warnings``: sentences on what the numbers suffer from; ``notes``: warnings and notes that were
-  said, each once, with ``text``, ``stage``, its ``number`` and ``time_s``, which are empty and 0
-  before the first stage
+  said, each once, with ``text``, ``stage``, its ``number`` and ``time_s``, empty and 0 before the
+  first stage
 - ``seconds``: wall-clock time of ``setup``, with first periods; of ``steps``, with those that look
   for buckling; of ``rows`` and ``frames``
-- ``kinds``: names of the kinds of joints, in the order of their numbers in the ParaView files
+- ``kinds``: names of the kinds of joints by their numbers in the ParaView files
 - ``collapsed``; ``collapse``: what has fallen, and how far; ``ended``: how the last stage ended
   (:mod:`masonry.stages.answers`)
 - ``interrupted``: by Ctrl-C or SIGTERM; ``error``: what ended the run; ``resumed_at_s``: times in
   the scene at which it was resumed
 - ``files``: names that the run may have written, with * for a number; the next run in this folder
   replaces these and no others
-- ``figure``: what curve.png shows; only a run that has it can be drawn:
+- ``figure``: what curve.png shows; without it nothing is drawn:
 
   - ``x``, ``y``: ``{"column": "displacement_mm", "label": "displacement of the top [mm]"}``, and a
     list of such dicts, the first of which is drawn in bold
   - ``y_label``: of the axis, with the unit in brackets
   - ``looped``: whether x goes there and back, which is drawn with axes through zero and envelope
-  - ``marks``: points, as ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, with
-    ``"below": true`` for a text below
+  - ``marks``: points, as ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, with ``"below":
+    true`` for a text below
   - ``rows``: pairs of the first row that is shown, from 0, and the one behind the last; else all
   - ``bounds``: horizontal lines, as ``{"y": 117.0, "text": "limit analysis, upper bound"}``
 
-- ``parts``: lists of body ids by name, each a panel of cracks.png; ``views``: direction of sight
-  by part, if not that of :func:`masonry_view.views.viewOf`; ``reference_body``: id of the body
-  whose displacement is taken off all others there
+- ``parts``: lists of body ids by name, each a panel of cracks.png; ``views``: direction of sight by
+  part, if not that of :func:`masonry_view.views.viewOf`; ``reference_body``: id of the body whose
+  displacement is taken off all others there
 - ``answers``: :class:`masonry.stages.answers.Answer` of the stages, with ``stage`` and ``number``
 - ``recorded_joints``, ``recorded_drifts``, ``recorded_sections``: joints whose means are recorded;
   columns of drifts [mrad], and of forces and moments of sections
@@ -74,20 +70,18 @@ or None:
   ``facets`` of the friction cones in space, and their ``facet_error`` [-]; or a ``note``, why there
   is none. With --preset bound ``without_dilatancy``, the factor if joints slip without opening, and
   ``without_dilatancy_settled``, whether its iteration has settled. Of ``scene.domain``
-  ``pressed_kN``, the normal force that was given, and ``normal_kN``, that at the supports. A run
-  that was killed and resumed has no picture of the mechanism
+  ``pressed_kN``, the normal force that was given, and ``normal_kN``, that at the supports
 - ``largest_cracks_mm``: the largest opening at the end by kind of joint and by part;
   ``largest_crack_at_m``, ``largest_crack_bodies``: its point as built, and the ids of both bodies
-- ``accuracy``, ``peak_half_width_kN``, ``work_half_width_J``: of --accuracy:
+- ``accuracy``, ``peak_half_width_kN``, ``work_half_width_J``:
   :meth:`masonry.run.accuracy.AuxiliaryRuns.report`
-- ``wall``: of a whole wall in running bond that a platen pushes, for measures of its cracks
-  (:func:`masonry.scene.summary.wallOf`): ``corner_m``, x and z of its lower left corner;
+- ``wall``: :func:`masonry.scene.summary.wallOf`: ``corner_m``, x and z of its lower left corner;
   ``unit_m``, length, thickness and height of a unit; heights are above the base, and
   ``load_height_m`` is None if the platen cannot turn
 - ``history``: of a push that follows one: ``text`` of the option; ``points``, ``turning_points``:
   how many; ``path_mm``: length of the way; ``noise_mm``: up to which an excursion is no half cycle;
-  ``amplitudes_mm``: pairs of an amplitude and its number of cycles, or ``file`` and the ``sha256``
-  of its contents; ``cycles``: :func:`masonry.numbers.curves.cycleNumbers` of every whole cycle
+  ``amplitudes_mm``: pairs of an amplitude and its number of cycles, or ``file`` and ``sha256``;
+  ``cycles``: :func:`masonry.numbers.curves.cycleNumbers`
 
 Numbers, one a line with its source and unit, are those of :mod:`masonry.numbers.quantities`.
 """
@@ -119,7 +113,7 @@ class Results:
 
     :param directory: folder, made if it is missing
     :param resumed: whether to leave everything as it is, until :meth:`resume`
-    :param scene: name of the scene, for others that want the folder
+    :param scene: its name, for others that want the folder
     """
 
     def __init__(self, directory, columns, resumed=False, scene=""):
@@ -177,7 +171,6 @@ class Results:
 
     @property
     def begun(self):
-        """Whether files are written."""
         return self._file is not None
 
     def begin(self):
@@ -221,7 +214,6 @@ class Results:
         return os.path.join(self.directory, name)
 
     def _curve(self):
-        """curve.csv, open to add to it."""
         return open(self.path("curve.csv"), "ab", buffering=0, opener=folders.inside)
 
     def resume(self, rows, frames, seconds):
@@ -246,7 +238,6 @@ class Results:
     def append(self, rows):
         """Write rows to curve.csv.
 
-        :param rows: lists with a number for every column
         :raises FloatingPointError: if a number is not finite; its row and those after it are left
             out
         :raises Unwritable: if the disk refuses; what fits is kept, in whole lines, and ``rows`` has

@@ -24,7 +24,6 @@ from . import batch
 from .checkpoints import Checkpoints, Saved, otherVersion, restored
 from .frame_writer import Frames
 from .run_state import RunState, StageContext
-from .plotting import live
 from .presets import presetNote, presetOf
 from .progress import Progress
 from .readings import Readings
@@ -39,10 +38,8 @@ CRACKS_EVERY = 300
 
 
 class Run:
-    """A run in stages; the module says how to use it. :func:`masonry.run.ending.end` ends it in
-    order.
-
-    Results of an earlier run stay until there is a first row or frame, or the end.
+    """A run in stages; :func:`masonry.run.ending.end` ends it in order. Results of an earlier run
+    stay until there is a first row or frame, or the end.
 
     :param name: name of the scene; its results go to ``results/<name>`` if the options do not say
         otherwise
@@ -84,7 +81,7 @@ class Run:
         if batch.PROBE in os.environ:  # there is no run, and nothing shall be left
             folder = os.environ[batch.PROBE] + ".results"
         self.results = Results(folder, heads, bool(args.resume), self.name)
-        self.readings = Readings(columns, self.results, live(heads))
+        self.readings = Readings(columns, self.results)
         if batch.VARIABLE in os.environ and batch.ended(folder):
             self.results.release()  # another one ran this row since the options were read
             say(f"{folder} has the results of this row")
@@ -124,7 +121,6 @@ class Run:
 
     @property
     def interrupted(self):
-        """Whether the user has interrupted the run."""
         return self.signals.interrupted
 
     @property
@@ -138,7 +134,6 @@ class Run:
         self.state.recordNote(text, self.entered, O.time if self.entered else 0.0)
 
     def auxiliary(self, what):
-        """A block that computes something beside the run: :class:`masonry.auxiliary.Auxiliary`."""
         return Auxiliary(what, self.fail)
 
     def fail(self, note, trace):
@@ -161,8 +156,8 @@ class Run:
         return self.saved is not None and not self.advanced
 
     def cutBackTo(self, number, resumedHere):
-        """In a resumed run, let rows and frames be those of the beginning of the stage of a number,
-        or of the checkpoint if the run was resumed inside this stage."""
+        """In a resumed run, let rows and frames be those of the beginning of a stage, or of the
+        checkpoint if the run was resumed inside this stage."""
         state, rows = self.state, self.saved.rows
         self.resumedHere = resumedHere
         if resumedHere:
@@ -321,7 +316,6 @@ class Run:
         say(f"collapsed: {what}")
 
     def release(self):
-        """Let other runs have the folder, and others the signals."""
         stopListening(self.recordNote)
         if self.frames:
             self.frames.end()

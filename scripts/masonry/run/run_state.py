@@ -72,7 +72,6 @@ class RunState:
             self.notes = [*self.notes, note]
 
     def listed(self):
-        """The entry ``stages`` of run.json."""
         listed, end = [], dict(steps=self.steps, seconds=self.seconds["steps"])
         for number, (one, after) in enumerate(zip(self.stages, [*self.stages[1:], end]), 1):
             taken = {key: after[key] - one[key] for key in ("steps", "seconds")}

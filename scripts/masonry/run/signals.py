@@ -19,13 +19,11 @@ class Signals:
         self._breaks = False  # whether these end at once what is done
 
     def begin(self):
-        """Obey signals from now on."""
         self._begun = True
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
 
     def end(self):
-        """Leave signals to others."""
         for number, handler in self._handlers.items():
             signal.signal(number, handler)
         self._handlers = {}

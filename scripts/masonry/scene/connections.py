@@ -17,7 +17,6 @@ from .script import describes
 
 
 def _end(value, context):
-    """Validator of an end: a target of the scene, or a brick."""
     if not isinstance(value, Target):
         return brick(value, context)
     if not isOwn(value, context):
@@ -75,8 +74,8 @@ def tie(
     """
     if (other is None) == (anchor is None):
         raise Refused("tie: give either other or anchor")
-    at = None if anchor is None else tuple(vector(anchor, "tie: anchor [m]"))
-    ends = _endOf(description, one), End(at) if at else _endOf(description, other)
+    far = _endOf(description, other) if anchor is None else End(tuple(map(float, anchor)))
+    ends = _endOf(description, one), far
     if description.plane:  # both ends are in the plane of the first one's middle
         level = ends[0].point[1]
         if ends[0].brick is not None:
@@ -94,7 +93,6 @@ def tie(
 
 
 def _springs(value, context=None):
-    """Validator of stiffnesses along or about three axes."""
     found = numbers("", MAX_STIFFNESS)(value)
     if min(found) < 0:
         raise ValueError(f"{value!r} must be three numbers of at least 0")
@@ -239,14 +237,12 @@ def overlay(
 
 
 def _onOneBrick(one, other):
-    """A sentence, if two ends are on the same brick or platen."""
     same = one.target is not None and one.target is other.target
     if same or one.brick is not None and one.brick == other.brick:
         yield f"its ends, {one.words} and {other.words}, are on one brick"
 
 
 def _take(description, word, made, problems):
-    """Take a connector whose name is new. Raises Refused."""
     refuse([f"{word}: {one}" for one in problems])
     connectors, overlays = description.connectors, description.overlays
     taken = {one.name for one in (*connectors, *overlays)}

@@ -54,7 +54,6 @@ class Contact(Settable):
 
 
 def problems(description, args):
-    """Sentences on what does not go with ``collapse="follow"``, or with functors."""
     if args.points and description.functors:
         yield (
             f"--points {args.points}: with functors joints keep three points; leave functors=False"

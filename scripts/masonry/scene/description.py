@@ -63,7 +63,6 @@ class Description:
         return len({b.brick for b in self.bricks}) < len(self.bricks)
 
     def problems(self, materials):
-        """Sentences on what does not go together with the materials of the options."""
         found = []
         if self.halves and "crack" not in materials.joints:
             found.append(
@@ -83,7 +82,6 @@ class Description:
         return found
 
     def connectorsOf(self, kind):
-        """Connectors of one class, in the order in which they were named."""
         return [one for one in self.connectors if type(one) is kind]
 
     def settable(self, copies=False):
@@ -127,7 +125,7 @@ class Description:
 
     def replace(self, one, other):
         """Let a record ``other`` that a script holds take the values and the place of one that the
-        same command has made again: a target, a recorded joint, a section, a tie or springs."""
+        same command has made again."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -139,8 +137,10 @@ class Description:
             records[:] = [other if record is one else record for record in records]
 
     def columns(self, structure, looped):
-        """The columns of curve.csv: those of the scene's choice, or all; ``looped``: whether the
-        drive follows a history. Raises Refused."""
+        """The columns of curve.csv: those of the scene's choice, or all. Raises Refused.
+
+        :param looped: whether the drive follows a history
+        """
         found = [*columns.PUSH, *accelerations(structure, self.plane)]
         if any(target.box and not target.fixed for target in self.targets.values()):
             found += columns.OF_PLATEN
@@ -217,7 +217,6 @@ class Description:
 
 
 def accelerations(structure, plane):
-    """Columns of the horizontal acceleration that acts on the blocks, and of the load factor."""
     scaling = structure.args.density_scaling
     for i, axis in enumerate("x" if plane else "xy"):
         value = lambda r, i=i: structure.scheme.now[i] * scaling / GRAVITY

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
+"""Ground motion: records of acceleration, and viscous damping for it. No YADE is needed."""
 
 import glob
 import math

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Displacement histories: what ``--history`` may say, and the points that the drive goes to. This
-module needs no YADE.
+"""Displacement histories: what ``--history`` may say, and the points that the drive goes to. No
+YADE is needed.
 
 A history is a dict that JSON can hold. ``text`` is what the user wrote, and ``points_mm`` are
-displacements [mm] that are reached in turn, from 0 on, in straight lines. Beside these there are
+displacements [mm] that are reached in turn, from 0 on, in straight lines; and there are
 
-- ``amplitudes_mm`` of a list of amplitudes: pairs of an amplitude [mm] and how often it is
-  repeated; or
+- ``amplitudes_mm`` of a list of amplitudes: pairs of an amplitude [mm] and its number of cycles; or
 - ``file`` and ``sha256`` of a file: its path, and the fingerprint of its contents.
 """
 
@@ -31,13 +30,9 @@ PathPoint = namedtuple("PathPoint", "displacement direction brake")
 
 
 def parse(text):
-    """The history that a text stands for: amplitudes as in ``1,2x3,4``, or the path of a CSV file.
-
-    An amplitude A is one cycle 0 → +A → -A → 0, and ``Ax3`` is three of them. A file has a column
-    ``displacement_mm``.
-
-    :raises ValueError: with all problems
-    """
+    """The history that a text stands for: amplitudes as in ``1,2x3,4``, of which A is one cycle 0 →
+    +A → -A → 0 and ``Ax3`` three of them, or the path of a CSV file with a column
+    ``displacement_mm``. Raises ValueError with all problems."""
     if not text.strip():
         raise ValueError("must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file")
     named = os.sep in text or text.lower().endswith(".csv")
@@ -87,7 +82,6 @@ def _readFile(path):
 
 
 def _column(file):
-    """The displacements of a file [mm]."""
     table, path = file.table(), file.path
     named = [k for k, row in enumerate(table.heads) if row.cells.count(COLUMN) == 1]
     if not named:
@@ -159,7 +153,6 @@ def aim(args, start=0.0):
 
 
 def turns(points):
-    """How often the drive turns."""
     directions = [target.direction for target in targets(points)]
     return sum(one != other for one, other in zip(directions, directions[1:]))
 
@@ -173,12 +166,11 @@ def noise(history):
 
 
 def extends(new, old):
-    """Whether a history begins with all points of another one."""
     return new["points_mm"][: len(old["points_mm"])] == old["points_mm"]
 
 
 def describe(history):
-    """What run.json says of a history: the dict with number of points and length of the path in
+    """What run.json says of a history: its entries with number of points and length of the path in
     place of the points."""
     points = history["points_mm"]
     found = {name: value for name, value in history.items() if name != "points_mm"}

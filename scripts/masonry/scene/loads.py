@@ -23,7 +23,6 @@ Field = Annotated[
 
 
 def doubtPress(stress: float, name: str) -> None:
-    """Say that a stress looks as if it were in MPa."""
     if 0 < stress < 1e3:
         say(f"warning: {name}: {stress:g} Pa: is it in Pa, not MPa?")
 
@@ -121,7 +120,6 @@ def pressure(
 
 
 def _sumOf(forces):
-    """The sum of forces on faces (x, y, z) [N]."""
     x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
     return x, y, z
 
@@ -135,12 +133,12 @@ def wind(
     and stays.
 
     Loaded are the faces of rigid bricks within 45 degrees of the direction, also behind others,
-    each along its normal, where no joint covers it. Suction is a negative pressure.
+    each along its normal, where no joint covers it.
 
-    :param pressure: [Pa]
+    :param pressure: [Pa]; negative: suction
     :param towards: direction in which the wind blows, horizontal
     :param part: name of a part of the bricks; None: all
-    :returns: the sum of the forces [N], as :meth:`pressure` does
+    :returns: the sum of the forces [N]
     """
     towards = vector(towards, "wind: direction")
     doubtWind(pressure, "wind")

@@ -48,7 +48,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
-    :param loops: whether the scene has ``--history``, else None
+    :param loops: whether the scene has ``--history``
     """
     program = "yade" if hasattr(sys, "yade_argv") else "python3"
     p = Parser(
@@ -99,13 +99,12 @@ def ofScene(name, arguments, sceneOptions):
 
 
 def check(args, masonry, connectors, more=()):
-    """Apply ``--set`` and ``--field``. Refuse options that do not go together, and materials that
-    lack something.
+    """Apply ``--set`` and ``--field``. Refuse, with all problems, options that do not go together,
+    and materials that lack something.
 
-    :param args: the parsed options; ``masonry``: the :class:`masonry.materials.Masonry` for them
+    :param masonry: the :class:`masonry.materials.Masonry` for these options
     :param connectors: ties, springs and fibre layers by name
     :param more: problems that the caller has found
-    :raises Refused: with all problems
     """
     problems = [*more]
     if args.blocks == "rigid" and args.divisions > 1:

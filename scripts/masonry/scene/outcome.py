@@ -46,7 +46,6 @@ class ResultSummary:
 
     @property
     def pushed(self):
-        """The options of the last push, or None."""
         return self.scene.pushed
 
     @property
@@ -58,7 +57,6 @@ class ResultSummary:
 
     @property
     def pushes(self):
-        """Names of the last push, there and back."""
         pushes = [load[1:] for _, load in self.loads if load[0] == "push"]
         return pushes[-1] if pushes else []
 
@@ -154,7 +152,6 @@ class ResultSummary:
         return [head for head in heads if head in self.results.columns]
 
     def _ground(self):
-        """Entries for ground and contact, if a collapse is followed."""
         ground, engine = self.description.ground(), self.model.contacts
         if not (ground and engine):
             return {}
@@ -163,7 +160,6 @@ class ResultSummary:
 
     @property
     def data(self):
-        """The data of the run so far, from which its numbers are found."""
         state, results = self.scene.running.state, self.results
         column = functools.cache(
             lambda name: results.column(name) if name in results.columns else None
@@ -184,7 +180,7 @@ class ResultSummary:
             run.update(self._cracks())
         data = self.data
         if self.pushed:
-            run.update(self._ofPush(data))
+            run.update(self._ofPush())
             if self.args.lean and "wall" in run:
                 with withoutCollector():
                     data.joints = asFrame(MasonryVtkRecorder().joints(), cracks.NEEDED)
@@ -198,7 +194,7 @@ class ResultSummary:
                 self._addAccuracy(run)
         run["answers"] = scene.answers
 
-    def _ofPush(self, data):
+    def _ofPush(self):
         """Entries from which the numbers of a push are found."""
         model = self.model
         period, weight, grown = self._freeVibration()
@@ -216,7 +212,6 @@ class ResultSummary:
         }
 
     def _cracks(self):
-        """The widest cracks: of all joints, and by kind of joint and part."""
         parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}
         groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}
         width, point, bodies, found = cracks.widest(
@@ -255,7 +250,6 @@ class ResultSummary:
     # -- files and terminal ------------------------------------------------------------------------
 
     def figure(self):
-        """The entries of run.json by which curve.png is drawn."""
         return {"title": self.description.title, **self._figure(), **self._wall()}
 
     def write(self, directory, wait=True):
@@ -269,7 +263,6 @@ class ResultSummary:
                 say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
 
     def report(self, run):
-        """Lines to print at the end, by the entries of run.json."""
         name = self.scene.name
         for joint in self.description.joints:
             found = quantities.ofJoint(self.results.column, joint.prefixed, brief=True)
@@ -281,7 +274,6 @@ class ResultSummary:
         yield f"{name}: {quantities.headline(run, True, grows) or run['ended']}"
 
     def warnings(self, run):
-        """Sentences on what the numbers suffer from, by the entries of run.json."""
         yield from self.scene.bounds.over(run)
         if not self.pushed:
             return

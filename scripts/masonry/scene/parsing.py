@@ -82,7 +82,6 @@ class Parser(argparse.ArgumentParser):
         super().error("\n  ".join([*self.problems, message]))
 
     def _refuse(self, refused):
-        """End the program."""
         reportRefusal(refused)
         self.exit(2, f"{refused}\n")
 
@@ -193,7 +192,7 @@ def checked(parser, name, options):
     problems.
 
     :param parser: :class:`Parser` whose options they are
-    :param name: of the scene; ``options``: values by option
+    :param options: values by option
     """
     actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
     found, problems = {}, []
@@ -217,7 +216,6 @@ def checked(parser, name, options):
 
 
 def _value(action, value):
-    """The value of an option from that of a keyword. Raises ValueError or ArgumentTypeError."""
     if value is None and (action.default is None or action.dest == "until"):
         return None
     if action.choices:
@@ -243,13 +241,12 @@ def _typed(action, value):
 
 
 def keep(args, name, options):
-    """Let options have the values that a script gives as keywords.
-
-    The command line and presets win, and a note says so. Options of a run that is resumed stay.
+    """Let options have the values that a script gives as keywords. The command line and presets
+    win, and a note says so. Options of a run that is resumed stay. Raises Refused with all
+    problems.
 
     :param args: :class:`Options`, which are changed
-    :param name: of the scene; ``options``: values by option
-    :raises Refused: with all problems
+    :param options: values by option
     """
     if not isinstance(args, Options):
         if options:

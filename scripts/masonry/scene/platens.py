@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated
 from ..arguments import vector as numbers
-from ..model.bodies import vector
 from ..errors import IN_PLANE, refuse
 from .targets import BrickAt, Part, Target
 from .ties import MAX_STIFFNESS, End, Spring, Tie
@@ -22,7 +21,6 @@ Point = Annotated[Numbers, numbers("m", 1e6)]
 
 
 def stiffnesses(value: Any, context: Any = None) -> Any:
-    """Validator of stiffnesses of springs: a dict from axes to numbers above 0."""
     found = byName(number("N/m or N m", 0, MAX_STIFFNESS, above=True))(value)
     unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
     if unknown or not found:
@@ -91,7 +89,7 @@ def platen(
     held = {*guided, *("yXZ" * plane)}
     held |= {*("xyzXYZ" if bottom else "" if rotation == "free" else "XYZ")}
     held -= {*springs, *(("Y" if plane else "XY") * uplift)}
-    point = middle if point is None else tuple(vector(point, "platen: point [m]"))
+    point = middle if point is None else tuple(map(float, point))
     if recorded is not None and not begins <= recorded * (1 + 1e-12):
         raise ValueError(
             f"platen: recorded {recorded:g} m is not on the platen, which begins at {begins:g} m"

@@ -3,9 +3,9 @@
 scene, and what a horizontal section transmits.
 
 The free body above a section is that of all blocks, platens too, whose centroid was above its
-height z when the scene was built. The joints, ties and springs between it and the other blocks and
-the ground transmit all that acts between both, so their resultant is exact statics in any bond. At
-rest it is the weight of these blocks and the loads on them.
+height z when the scene was built. The joints, ties and springs below it transmit all that acts on
+it, so their resultant is exact statics in any bond. At rest it is the weight of these blocks and
+the loads on them.
 """
 
 import itertools
@@ -17,7 +17,6 @@ from yade import O, Vector3
 from .._masonry import resultant
 from ..arguments import Direction, Name, shown, validated
 from ..arguments import name as nameOf
-from ..model.bodies import vector
 from ..numbers.columns import Column
 from ..errors import Refused
 from .platens import Coordinate
@@ -43,8 +42,8 @@ class Section:
     _read: tuple = (None, None)  # the last reading, and its forces
 
     def join(self, structure: Any) -> None:
-        """Find its joints in a :class:`masonry.model.structure.Structure` in YADE. Raises Refused
-        if there are none."""
+        """Find its joints in a :class:`masonry.model.structure.Structure`. Raises Refused if there
+        are none."""
         description = structure.description
         size = description.high[2] - description.low[2]
         level = self.z + LEVEL * (size + abs(self.z))
@@ -125,7 +124,6 @@ class Section:
 
 
 def _nameOrNothing(value, context=None):
-    """Validator of a name or an empty text."""
     return value if isinstance(value, str) and not value else nameOf(value)
 
 
@@ -208,7 +206,6 @@ def section(
 
     The middle is that of the box around the bricks that reach ``z`` as they are built, and stays in
     space, while the forces act where the blocks are: eccentric weight of a wall that leans counts.
-
     Every run of a structure on platens records ``base``, at its bottom, unless the scene has a
     section there.
 
@@ -216,8 +213,7 @@ def section(
     :param part: name of a part of the bricks: the joints whose upper brick (under a platen, the
         lower one) is of it, so that parts add up to the whole; None: all joints
     :param name: before the names of the columns; None: ``section`` and a number
-    :returns: a :class:`Section`, whose ``forces()`` can be read between
-        stages, too
+    :returns: its ``forces()`` can be read between stages, too
     """
     name = f"section{len(description.sections)}" if name is None else name
     found = Section(name, float(z), part, _middleAt(description, z, part, name))
@@ -245,7 +241,7 @@ def _middleAt(description, z, part, name):
 
 
 def recordBase(description: Any) -> None:
-    """Record the section at the base of a structure on platens, unless the scene has one there."""
+    """Record the section at the base of a structure on platens, unless the scene has one."""
     z, targets = float(description.low[2]), description.targets.values()
     near = 1e-6 * (1 + abs(z))
     own = (s.part is None and abs(s.z - z) < near for s in description.sections)
@@ -279,6 +275,6 @@ def view(description: Any, direction: Direction, part: Part | None = None) -> No
 
     :param part: name of a part of the bricks; None: all
     """
-    sight = [float(v) for v in vector(direction, "view: direction")]
+    sight = [*map(float, direction)]
     parts = {block.part for block in description.bricks} if part is None else [part]
     description.views.update(dict.fromkeys(parts, sight))

@@ -25,8 +25,8 @@ def resume(scene: Any) -> Any:
     the same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`,
     this is the step that was interrupted.
 
-    :returns: a new scene, which goes on with the folder and the targets of this one; its ``ended``
-        says how that stage ended
+    :returns: a new scene, with the folder and the targets of this one; its ``ended`` says how that
+        stage ended
     :raises ValueError: if the scene was not interrupted, or left no checkpoint
     """
     if not (scene.finished and scene.running.kept):

@@ -1,16 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene: bricks between platens, loaded in stages. It reads from top to bottom::
-
-    from masonry import Scene, bricks, materials
-
-    window = bricks.Opening(x=1.1, z=0.81, width=0.88, height=0.972)
-    wall = bricks.Wall(length=3.08, height=2.43, openings=[window])
-    scene = Scene("pier_with_window", wall, materials.calciumSilicate())
-    base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
-    scene.press(top, 0.3e6)                   # [Pa]
-    scene.settle()
-    scene.cycle(top, [2, 4, 8], repeats=2)    # [mm]
-    scene.finish()
+"""A scene: bricks between platens, loaded in stages, as ``help(masonry)`` shows.
 
 Commands before the first stage describe: platens, supports, loads, what is recorded. Stages
 (:mod:`masonry.stages`) return how they ended: ``AT_REST``, ``MOVING``, ``DONE`` or ``COLLAPSED``;
@@ -56,7 +45,6 @@ from .script import SHAKES, Call, Script, either
 
 
 def _ofFolder(value, context=None):
-    """Validator of the name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
         raise Refused(f"{shown(value)} must be a text that can name a folder")
@@ -64,7 +52,6 @@ def _ofFolder(value, context=None):
 
 
 def _blocksOf(value, context=None):
-    """Validator of the bricks of a scene."""
     try:
         found = list(value)
         found[0].corners[0][2]
@@ -195,8 +182,6 @@ class Scene:
         return wings.find("_repr_html_")(self) if wings.isInstalled("_repr_html_") else None
 
     def probe(self, stage: str, traits: Any, arguments: dict[str, Any]) -> Any:
-        """Write what a study must know of a scene that is built; see
-        :func:`masonry_study.probing.probe`."""
         return wings.find("probe")(self, stage, traits, arguments)
 
     @property
@@ -216,7 +201,7 @@ class Scene:
 
     @property
     def results(self) -> Results:
-        """The folder of results: :class:`masonry.run.results.Results`, when the scene is built."""
+        """The folder of results, when the scene is built."""
         return self.running.results
 
     @property
@@ -231,12 +216,12 @@ class Scene:
     @property
     def factor(self) -> float:
         """The largest load factor [-] under which the structure came to rest, of the last stage
-        that found one, for example of :meth:`accelerate`; else not a number."""
+        that found one; else not a number."""
         found = [a["value"] for a in self.answers if a["name"] == "factor_held"]
         return next((value for value in reversed(found) if value is not None), math.nan)
 
     def checkOpen(self, name: str) -> None:
-        """Raise ValueError if the scene is finished, or gone because another one was built."""
+        """Refuse a scene that is finished, or gone because another one was built."""
         if self.finished:
             raise Refused(f"{name}: the scene is finished")
         if self.model and self.isGone:

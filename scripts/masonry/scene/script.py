@@ -124,18 +124,14 @@ def asData(value):
 
 
 class Script:
-    """The commands that the script has given so far.
-
-    ``commands`` is a list of pairs: the name of a command, and its arguments as a dict of data. A
-    checkpoint keeps it.
-    """
+    """The commands that the script has given so far. ``commands`` is a list of pairs, which
+    checkpoints keep: the name of a command, and its arguments as a dict of data."""
 
     def __init__(self):
         self.commands = []
         self._extendable = []  # for each command, the arguments that set its end
 
     def note(self, act, first, args, settings):
-        """Note a command."""
         self.add(act.__name__, asData(argumentsOf(act, first, args, settings)))
 
     def add(self, word, arguments, extendable=()):
@@ -144,7 +140,6 @@ class Script:
         self._extendable.append(set(extendable))
 
     def isFirst(self, kinds):
-        """Whether the last command is the first of some kinds that the script gives."""
         *before, (last, _) = self.commands
         return last in kinds and not any(command in kinds for command, _ in before)
 

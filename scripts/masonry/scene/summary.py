@@ -100,7 +100,6 @@ def _freedom(freedom):
 
 
 def noteCourse(description):
-    """Note that the joints were made for other courses."""
     course = description.materials.course
     heights = {block.high[2] - block.low[2] for block in description.bricks}
     if course and not any(abs(h - course) < 0.01 * course for h in heights):

@@ -35,8 +35,7 @@ class Target:
         return ((self.body, self.point, 1.0),)
 
     def columns(self, plane: bool) -> Iterator[Column]:
-        """What is recorded of it: displacements, forces where it is held, and its rotation;
-        ``plane``: whether the scene is in the x-z plane."""
+        """What is recorded of it; ``plane``: whether the scene is in the x-z plane."""
         name, axes = self.name, "xz" if plane else "xyz"
         supports = lambda r: r.structure.supports
 
@@ -78,7 +77,6 @@ class Drift:
     upper: Target
 
     def columns(self, plane: bool) -> Iterator[Column]:
-        """The difference of the displacements, and its ratio to the height between them."""
         height = self.upper.recorded[2] - self.lower.recorded[2]
         for i, axis in enumerate("x" if plane else "xy"):
             name = f"{self.name}_{axis}"
@@ -128,7 +126,7 @@ class JointRecord:
         return self._mean(stress[axis] for stress in self.interaction.phys.stress)
 
     def prefixed(self, name: str) -> str:
-        """A name of a column or an entry of run.json, behind that of the joint, if it has one."""
+        """A name behind that of the joint, if it has one."""
         return f"{self.name}_{name}" if self.name else name
 
     def dissipated(self) -> dict[str, float]:
@@ -137,7 +135,6 @@ class JointRecord:
         return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}
 
     def columns(self, plane: bool) -> Iterator[Column]:
-        """What is recorded of it; ``plane``: as in :meth:`Target.columns`."""
         between = "the joint between bricks {} and {}".format(*self.bricks)
         for name, unit, meaning, factor, mean in (*OF_JOINTS, *(() if plane else ACROSS)):
             value = lambda r, factor=factor, mean=mean: factor * mean(self)
@@ -188,7 +185,6 @@ def _descriptionOf(context):
 
 
 def isOwn(target: Any, context: Any) -> bool:
-    """Whether a target is of this scene."""
     return _descriptionOf(context).targets.get(target.name) is target
 
 
@@ -208,14 +204,12 @@ def _target(what, fits):
 
 
 def _recordedJoint(value, context):
-    """Validator of a joint that ``scene.joint`` returned."""
     if not any(value is one for one in _descriptionOf(context).joints):
         raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")
     return value
 
 
 def _part(value, context):
-    """Validator of the name of a part of the bricks."""
     return oneOf(*sorted({block.part for block in _descriptionOf(context).bricks}))(value)
 
 

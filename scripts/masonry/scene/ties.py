@@ -58,12 +58,9 @@ class End:
 
 
 class Connector(Settable):
-    """A tie or springs, or another kind with one engine for all of it.
-
-    ``number``: among those of the ``engine``; ``overlay``: name of that of which it is a fibre;
-    ``isSupport``: whether its force on a platen is one of a support; ``isListed``: whether run.json
-    has an entry of it
-    """
+    """A tie or springs, or another kind with one engine for all of it. ``number``: among those of
+    the ``engine``; ``overlay``: name of that of which it is a fibre; ``isSupport``: whether its
+    force on a platen is one of a support; ``isListed``: whether run.json has an entry of it"""
 
     overlay, isSupport, isListed = "", True, True
 
@@ -104,7 +101,6 @@ class Tie(Connector):
 
     @staticmethod
     def engineOf(records, **ends):
-        """The engine of all ties; ``ends``: their bodies and points."""
         never = lambda value: NEVER if value is None else value
         breaks = lambda one: one.breaking and one.breaking * one.length
         return MasonryTies(
@@ -177,14 +173,13 @@ class Tie(Connector):
         return self._now("elongations", 0.0)
 
     def on(self, end, connectors):
-        """Force [N] and moment [N m] on one of its ends: two vectors; ``connectors``:
+        """Force [N] and moment [N m] on one of its ends, with the
         :class:`masonry.model.connectors.Connectors`."""
         other = self.ends[1] if end is self.ends[0] else self.ends[0]
         away = connectors.placeOf(other) - connectors.placeOf(end)
         return self.force * away.normalized(), 0 * away
 
     def columns(self, plane):
-        """What is recorded of it."""
         if self.overlay:
             return
         where = f"{self.ends[0].words} and {self.ends[1].words}"
@@ -214,7 +209,6 @@ class Tie(Connector):
         return "yielded" if self._now("yieldedAt", -1) >= 0 else "elastic"
 
     def entry(self):
-        """What run.json says of it."""
         return {
             "name": self.name,
             "ends_m": [list(end.point) for end in self.ends],
@@ -247,7 +241,6 @@ class Spring(Connector):
 
     @staticmethod
     def engineOf(records, **ends):
-        """The engine of all springs; ``ends``: their bodies and points."""
         return MasonrySprings(
             label="springs",
             stiffness=[one.stiffness for one in records],
@@ -294,7 +287,6 @@ class Spring(Connector):
         return sign * Vector3(*self.force), sign * Vector3(*self.moment)
 
     def columns(self, plane):
-        """What is recorded of it."""
         where = f"the spring between {self.ends[0].words} and {self.ends[1].words}"
         for what, unit, along in (("force", "kN", "along"), ("moment", "kNm", "about")):
             stiff = self.stiffness if what == "force" else self.rotation
@@ -305,7 +297,6 @@ class Spring(Connector):
                     yield Column(f"{self.name}_{what}_{axis}", unit, meaning, value)
 
     def entry(self):
-        """What run.json says of it."""
         return {
             "name": self.name,
             "at_m": list(self.ends[0].point),
@@ -350,7 +341,6 @@ class Overlay(Settable):
             one.scatter("breaking" if name == "strain" else name, factor)
 
     def columns(self, plane):
-        """What is recorded of it."""
         for what in ("yielded", "broken"):
             meaning = (
                 f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
@@ -364,7 +354,6 @@ class Overlay(Settable):
         return sum(steps[one.number] >= 0 for one in self.ties) if steps else 0
 
     def entry(self):
-        """What run.json says of it."""
         return {
             "name": self.name,
             "stiffness_N_per_m": self.stiffness,

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run in 3-D in any browser: a page that is one file and needs no server, no network and no
-ParaView. No YADE is needed.
+"""A run in 3-D in any browser: a page that is one file and needs no server and no network. No YADE
+is needed.
 
 ::
 
     from masonry_view import page
 
-    page.write("results/wall_comp4", "wall.html")  # a page, as scripts/view.py --html writes it
+    page.write("results/wall_comp4", "wall.html")  # a page, as scripts/view.py writes it
     page.show("results/wall_comp4")                # in a notebook: the picture
 
 ``viewer.js`` and ``viewer.css`` beside this module draw with three.js of the Debian package
@@ -55,16 +55,13 @@ def write(
     number: FrameNumber | None = None,
     magnification: Factor | None = None,
 ) -> None:
-    """Write a :func:`page` to a file, whole or not at all.
-
-    :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
-    """
+    """Write a :func:`page` to a file, whole or not at all. Raises OSError, also if its name is that
+    of a symbolic link."""
     pages.write(path, page(directory, number, magnification))
 
 
 class Picture:
-    """A page that a notebook shows in a frame, whose script does not reach the notebook. ``page``
-    is the whole page, a text."""
+    """A page that a notebook shows in a frame, whose script does not reach the notebook."""
 
     def __init__(self, directory, page, height):
         self.page, self._directory, self._height = page, directory, height
@@ -85,10 +82,9 @@ def show(
     number: FrameNumber | None = None,
     height: Annotated[int, whole(200, 5000)] = HEIGHT,
 ) -> Picture:
-    """The picture of a run for a notebook, which shows what the last line of a cell returns.
+    """The picture of a run for a notebook, which shows what the last line of a cell returns. Errors
+    as in :func:`page`.
 
-    :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of
-        :func:`page`
-    :returns: a :class:`Picture`
+    :param height: of the picture [pixels]
     """
     return Picture(directory, page(directory, number), height)

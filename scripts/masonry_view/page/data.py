@@ -11,6 +11,7 @@ import zlib
 
 import numpy as np
 
+from masonry.errors import Refused
 from .. import painting
 from masonry.numbers.cracks import CRACK, CRUSHED, DAMAGED
 from masonry.numbers.files import filesOf
@@ -50,22 +51,23 @@ class _Arrays:
 
 
 def dataOf(directory, number=None, magnification=None):
-    """The head, a dict that can be written as JSON, and the arrays as a text in base64.
+    """The head, a dict that can be written as JSON, and the arrays as a text in base64. Raises
+    Refused if frames are missing or damaged.
 
-    :param directory: folder of results
     :param number: of the frame that is shown first, from 0; None: the last one
     :param magnification: of displacements at first [-]; None: as in cracks.png
-    :raises Refused: if the folder has no frames, if they are damaged, or without that frame
     """
-    if number is not None:
-        Model(directory, number)  # it says which frames there are
-    return dataOfModel(Model(directory), number, magnification)
+    model = Model(directory)
+    if number is not None and not 0 <= number < model.count:
+        raise Refused(
+            f"{directory}: there is no frame {number}; its frames are 0 to {model.count - 1}"
+        )
+    return dataOfModel(model, number, magnification)
 
 
 def dataOfModel(model, number=None, magnification=None, curve=None):
     """As :func:`dataOf`, of a run whose frames have been read.
 
-    :param number: of the frame that is shown first among those that were read, from 0
     :param curve: columns of curve.csv for what is said beside the frames; None: they are read
     """
     arrays, joints = _Arrays(), model.joints
@@ -102,7 +104,6 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
 
 
 def _head(model, magnification, curve):
-    """What is said about a run, and how it is seen first."""
     sight = model.sight(magnification)
     return {
         "title": model.title,

@@ -27,11 +27,7 @@ or as yourself:
 
 
 def three():
-    """The files of the library, a list of texts, and its licences, as Debian's copyright file has
-    them.
-
-    :raises Refused: if it is not there, with the package that has it
-    """
+    """The files of the library, a list of texts, and its licences. Raises Refused."""
     paths = [*(HERE + name for name in CODE), COPYRIGHT]
     for place in PLACES:
         try:

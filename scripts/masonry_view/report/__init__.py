@@ -11,9 +11,8 @@ A run writes it at its end, but with ``--lean`` and when it is interrupted. From
 
     report.write(report.read("results/wall_comp4"), "wall.html")
 
-Its sources are curve.csv, run.json, the frames for ParaView, cracks.png and mechanism.png; every
-number has its unit, what it is, and its source. What the files lack is said to be missing, with the
-reason. The turning picture is that of :mod:`masonry_view.page`; without the Debian package
+Every number has its unit, what it is, and its source. What the files lack is said to be missing,
+with the reason. The turning picture is that of :mod:`masonry_view.page`; without the Debian package
 libjs-three a sentence stands in its place.
 """
 
@@ -46,19 +45,11 @@ PARTS = (
 
 @validated
 def read(directory: FilePath) -> Record:
-    """Read the files of a run.
-
-    :param directory: folder of results
-    :raises Refused: if it has no run.json
-    """
+    """Read the files of a run. Raises Refused if it has no run.json."""
     return Record(directory)
 
 
 def page(record: Record) -> str:
-    """The report of a run as a whole page.
-
-    :param record: what :func:`read` gave
-    """
     library, licence = _library(record)
     parts = [(place, heading, _made(part, record)) for place, heading, part in PARTS]
     return rendered(
@@ -106,9 +97,6 @@ def _made(part, record):
 
 
 def write(record: Record, path: FilePath) -> None:
-    """Write :func:`page` to a file, whole or not at all.
-
-    :param record: what :func:`read` gave
-    :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
-    """
+    """Write :func:`page` to a file, whole or not at all. Raises OSError, also if its name is that
+    of a symbolic link."""
     pages.write(path, page(record))

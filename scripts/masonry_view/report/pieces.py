@@ -12,7 +12,6 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def isNumber(value):
-    """Whether a value is a finite number."""
     return arguments.isNumber(value) and math.isfinite(value)
 
 
@@ -60,7 +59,6 @@ class Piece(NamedTuple):
 
 
 def _form(name):
-    """A function that takes the arguments of a macro and returns a :class:`Piece`."""
     return lambda *given, **named: Piece(name, given, named)
 
 
@@ -70,7 +68,6 @@ facts, figure, listed, note, table, turning = map(
 
 
 def folded(title, *inside, **named):
-    """Pieces that are seen after a click on their title."""
     return Piece("folded", (title, inside), named)
 
 

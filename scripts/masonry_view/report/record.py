@@ -109,7 +109,6 @@ class Record:
             self.frameTimes, self.frameCount = model.times, model.count
 
     def _drawing(self):
-        """What was built as SVG, and a sentence on it."""
         blocks = readFrame(self.directory, "blocks", 0, elevation.NEEDED)
         # it is seen from the front, also where cracks.png looks askew
         run = {**self.run, "views": {}}
@@ -172,12 +171,10 @@ class Record:
 
     @property
     def isPush(self):
-        """Whether the numbers of a push are there."""
         return bool(self.data.pushes)
 
     @property
     def isLooped(self):
-        """Whether the push goes there and back."""
         return bool(self.spec and self.spec["looped"])
 
     @functools.cached_property
@@ -195,12 +192,10 @@ class Record:
         return found
 
     def _bare(self, refused):
-        """The text of a refusal without the folder at its beginning."""
         return str(refused).removeprefix(f"{self.directory}: ")
 
 
 def _finite(text):
-    """A number, NaN for what is not one."""
     try:
         value = float(text)
     except ValueError:

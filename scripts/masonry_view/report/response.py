@@ -29,7 +29,6 @@ NOISE = 1e-6  # of the largest force of a column: what is below is round-off
 
 
 def curve(record):
-    """The curve of the run with its marks and bounds."""
     spec = record.spec
     if spec is None or not len(record.rows):
         why = "; ".join(p for p in record.problems if "curve" in p)
@@ -85,7 +84,6 @@ OF_IDEAL = {
 
 
 def _ideal(record):
-    """The bilinear idealisation of a push, by every rule."""
     if not record.isPush:
         yield missing("The run has no push, so there is no bilinear curve.")
         return
@@ -120,7 +118,6 @@ def _ideal(record):
 
 
 def _aboutCurve(spec, y):
-    """What the curve shows, in a sentence for those who do not see it."""
     label, first = spec["y_label"], spec["y"][0]
     unit = unitOf({"label": label, "column": first["column"]})
     return (
@@ -130,7 +127,6 @@ def _aboutCurve(spec, y):
 
 
 def _places(record, data, x, y):
-    """Where the frames of the 3-D picture are on the curve."""
     if "time_s" not in data or not record.picture:
         return []
     rows = [int(np.nanargmin(np.abs(data["time_s"] - t))) for t in record.frameTimes]
@@ -224,7 +220,6 @@ FURTHER = {
 
 
 def bound(record):
-    """The bound by limit analysis."""
     if not record.run.get("bounds"):
         raise Refused(
             "There is no bound: limit analysis is made where a structure is pushed, leans or tilts,"
@@ -252,7 +247,6 @@ def bound(record):
 
 
 def _boundLine(one):
-    """The line of a bound in the table."""
     if not isNumber(one.get("factor")):
         return one["load"], "none", "", one["note"]
     unit = one["unit"] or "-"
@@ -263,7 +257,6 @@ def _boundLine(one):
 
 
 def energy(record):
-    """Where the work went: a table and a chart."""
     # a figure may show its rows in another order
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows
     columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
@@ -323,7 +316,6 @@ ABOUT_CYCLES = (
 
 
 def cycles(record):
-    """Equivalent damping of cycles."""
     entries = record.run.get("cycles")
     if not entries:
         raise Refused("The run has no whole cycles, so there is no equivalent damping.")

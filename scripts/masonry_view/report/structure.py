@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Parts of a report on what was built, and how it was held and loaded."""
 
-from masonry.errors import Refused
 from masonry.numbers import quantities
 
 from .pieces import (
@@ -56,7 +55,6 @@ OF_UNITS = (
 )
 MAX_COMMANDS = 12  # of a script that are shown at once
 MAX_LEADING = 3  # answers at the head of a report
-OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
 def origin(record):
@@ -117,12 +115,10 @@ def firstUpper(text):
 
 
 def answersOf(run):
-    """The answers of the stages that were found."""
     return [one for one in run.get("answers") or [] if isNumber(one["value"])]
 
 
 def nameOf(answer):
-    """The name of an answer in words."""
     return answer["name"].replace("_", " ")
 
 
@@ -203,11 +199,8 @@ def _badges(run):
 
 
 def _joints(run):
-    joints, effective = run.get("joints"), run.get("effective_properties")
-    if not (joints and effective):
-        yield missing(OLDER)
-        return
-    units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
+    joints, effective = run["joints"], run["effective_properties"]
+    units, meanings = run["joint_units"], run["joint_meanings"]
     counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
     joints = {kind: found for kind, found in joints.items() if kind in counted}
     assumed, kinds = _badges(run), list(joints)
@@ -242,9 +235,7 @@ def _lawOf(joint):
 
 
 def _assumed(run):
-    entries = run.get("assumed")
-    if entries is None:
-        raise Refused(OLDER)
+    entries = run["assumed"]
     if not entries:
         yield note(
             "Nothing was assumed: every property of the materials was given. Source: run.json:"
@@ -306,7 +297,6 @@ ENDINGS = (("_N_per_m", "N/m"), ("_Nm", "N m"), ("_N", "N"), ("_m", "m"))
 
 
 def _connections(run):
-    """Ties, springs and layers of fibres, if run.json has some."""
     for key in ("ties", "springs", "overlays"):
         lines = [
             (one["name"], "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
@@ -318,7 +308,6 @@ def _connections(run):
 
 
 def _named(name, value):
-    """An entry with its unit, which ends its name."""
     ends = ((ending, unit) for ending, unit in ENDINGS if name.endswith(ending))
     ending, unit = next(ends, ("", ""))
     words = name.removesuffix(ending).replace("_", " ")

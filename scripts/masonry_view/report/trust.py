@@ -30,7 +30,7 @@ def pictures(record):
         if shown < count:
             text += (
                 f" It has {shown} of the {count} frames of the run, so that this file stays small;"
-                " scripts/view.py --html writes one with all."
+                " scripts/view.py writes one with all."
             )
         yield note(text)
     else:
@@ -94,7 +94,6 @@ def _said(run):
 
 
 def _accuracy(run):
-    """The ± of --accuracy."""
     found = run.get("accuracy")
     if not found:
         return

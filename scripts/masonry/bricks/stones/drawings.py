@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Closed outlines of a drawing: DXF (by ezdxf), SVG (by svgelements), GeoJSON, or CSV with rows of
-name, x and z. What of a drawing is no outline is counted by kind, and never left out in silence."""
+name, x and z. What is no outline is counted by kind, and never left out in silence."""
 
 import io
 import json
@@ -34,10 +34,11 @@ TEXTS = set(
     "TEXT MTEXT DIMENSION ARC_DIMENSION POINT LEADER MLEADER MULTILEADER ATTDEF ATTRIB VIEWPORT"
     " TOLERANCE IMAGE WIPEOUT XLINE RAY LIGHT SUN OLE2FRAME".split()
 )
-#: Elements of SVG that are drawn as outlines, that hold such, and that are no part of a wall.
+#: Elements of SVG that are drawn as outlines, where something names them, and not at all.
 SHAPES = set("path polygon polyline rect circle ellipse line".split())
-HOLDERS = set("svg g a switch use symbol defs".split())
-ASIDE = set("symbol marker pattern clipPath mask".split())  # drawn where something names them
+ASIDE = set("symbol marker pattern clipPath mask".split())
+BESIDE = set("image text foreignObject".split())
+MEASURES = "x y width height cx cy r rx ry x1 y1 x2 y2".split()  # attributes that are lengths
 _LENGTH = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*(?:px|mm|cm|in|pt|pc)?\s*")
 #: Units of length of SVG and GeoJSON, and codes of $INSUNITS of DXF [m].
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6}
@@ -63,8 +64,8 @@ class Drawing:
 
     :ivar outlines: in the file's units, z upwards
     :ivar unit: metres in one unit of the file; None: the file does not say it
-    :ivar beside: what is no outline and no part of a wall, such as texts: its number by its kind
-    :ivar lost: what may be a part of the wall and cannot be read: its number by its kind
+    :ivar beside: number, by kind, of what is no outline and no part of a wall, such as texts
+    :ivar lost: number, by kind, of what may be a part of the wall and cannot be read
     """
 
     outlines: list[Outline] = field(default_factory=list)
@@ -218,33 +219,28 @@ def _geoJson(path, layer, drawing):
     if not isinstance(data, dict) or not isinstance(data.get("features", []), list):
         raise ValueError("it is no GeoJSON: no feature, geometry or collection of features")
     for n, feature in enumerate(data.get("features", [data])):
-        if not isinstance(feature, dict):
-            raise ValueError(f"feature {n} is none")
-        names = feature.get("properties")
-        names = names if isinstance(names, dict) else {}
-        name = str(feature.get("id", names.get("name", n)))
+        name = str(feature.get("id", (feature.get("properties") or {}).get("name", n)))
         shape = feature.get("geometry", feature)
         if shape is None:  # RFC 7946, 3.2: a feature that has no place
             drawing.beside["features without geometry"] += 1
             continue
-        kind = shape.get("type") if isinstance(shape, dict) else None
+        kind = shape.get("type")
         if kind not in ("Polygon", "MultiPolygon"):
             raise ValueError(f"feature {name} is a {kind}, not a Polygon")
-        polygons = shape.get("coordinates")
-        for polygon in [polygons] if kind == "Polygon" else polygons or [None]:
+        polygons = shape["coordinates"]
+        for polygon in [polygons] if kind == "Polygon" else polygons:
             drawing.outlines.append(Outline(name, _outerRing(polygon, name)))
 
 
 def _outerRing(polygon, name):
-    """The corners of a polygon of GeoJSON."""
-    if not isinstance(polygon, list) or not polygon:
+    if not polygon:
         raise ValueError(f"feature {name} has no ring")
     if len(polygon) > 1:
         raise ValueError(f"feature {name} has a hole: a stone has none")
     isPoint = (
         lambda p: isinstance(p, list) and len(p) > 1 and all(type(c) in (int, float) for c in p)
     )
-    ring = polygon[0] if isinstance(polygon[0], list) else [None]
+    ring = polygon[0]
     wrong = next((k for k, point in enumerate(ring) if not isPoint(point)), None)
     if wrong is not None or len({tuple(point[:3]) for point in ring}) < 3:
         what = f"corner {wrong} is no place" if wrong is not None else "it has not three corners"
@@ -370,30 +366,14 @@ def _check(root, drawing):
                 aside = ElementTree.Element(root.tag.removesuffix("svg") + "defs")
                 parent[n] = aside
                 aside.append(child)
-            if not tag or tag in ASIDE | HOLDERS | SHAPES:
-                pass
-            elif tag in ("image", "text", "foreignObject"):
+            elif tag in BESIDE:
                 drawing.beside[tag] += 1
     for element in root.iter():
         tag = _tag(element)
         name = element.get("id") or tag
         if tag not in SHAPES | {"use", "svg"}:
             continue
-        for key in (
-            "x",
-            "y",
-            "width",
-            "height",
-            "cx",
-            "cy",
-            "r",
-            "rx",
-            "ry",
-            "x1",
-            "y1",
-            "x2",
-            "y2",
-        ):
+        for key in MEASURES:
             if (text := element.get(key)) is not None and not _LENGTH.fullmatch(text):
                 if (key, text) not in (("rx", "auto"), ("ry", "auto")):
                     raise ValueError(

@@ -132,7 +132,6 @@ def _lines(ends, places):
 
 
 def _joined(lines, places, fine):
-    """Lines that go on through nodes."""
     starts = defaultdict(list)
     for k, line in enumerate(lines):
         for side, points in enumerate((line, line[::-1])):
@@ -191,10 +190,8 @@ def _corners(points, fine):
 
 
 def _onLines(places, between):
-    """The places, with some put on the line between two others.
-
-    :param between: by number those of the two others, and the share of the distance
-    """
+    """The places, with some put on the line between two others: ``between`` has by number these
+    two, and the share of the distance."""
     if not between:
         return places
     numbers = list(between)

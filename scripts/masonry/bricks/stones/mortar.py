@@ -22,7 +22,7 @@ def closed(solids, mortar, problems):
 
     :param solids: corners of each
     :param mortar: largest thickness of a joint [m]
-    :param problems: list that takes sentences on faces that fit no plane
+    :param problems: takes sentences on faces that fit no plane
     """
     found = Solids(solids)
     gaps = [
@@ -67,7 +67,6 @@ def _plane(solids, n, face):
 
 
 def _gaps(solids, mortar, one, two):
-    """The faces of two solids with mortar between them."""
     ours, theirs = (group.normals[row] for group, row in map(solids.of, (one, two)))
     for f, g in np.argwhere(ours @ theirs.T < FACING).tolist():
         normal = ours[f] - theirs[g]
@@ -90,7 +89,6 @@ def _gaps(solids, mortar, one, two):
 
 
 def _grown(solids, n, corners, planes):
-    """Corners of a solid some of whose faces have new planes."""
     count = len(solids.of(n)[0].faces)
     if not any((n, face) in planes for face in range(count)):
         return corners

@@ -149,7 +149,7 @@ def fromOutlines(
 
 
 def _scale(scale, unit):
-    """Metres in one unit of a file that says its unit or not. What the user says counts."""
+    """Metres in one unit of a file. What the user says counts."""
     if scale is None:
         return unit or 1.0
     if unit and abs(scale / unit - 1) > 0.01:
@@ -269,7 +269,6 @@ def _along(ring, step):
 
 
 def _limit(stones, step):
-    """Refuse outlines that need too many points."""
     length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)
     if not length / step <= MAX_POINTS:
         refuse(
@@ -288,7 +287,6 @@ def _sampled(stones, step):
 
 
 def _within(places, ring):
-    """Numbers of the places that lie inside a polygon."""
     near = np.flatnonzero(((places >= ring.min(0)) & (places <= ring.max(0))).all(1))
     return near[inside(places[near], ring)]
 

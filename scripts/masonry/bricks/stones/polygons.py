@@ -9,7 +9,6 @@ STRAIGHT = 2 * FLAT  # distance of a straight corner from its line over the size
 
 
 def inside(points, ring):
-    """Which points lie inside a polygon."""
     x, z = points[:, :1], points[:, 1:]
     a, b = ring, np.roll(ring, -1, axis=0)
     passed = (a[:, 1] > z) != (b[:, 1] > z)

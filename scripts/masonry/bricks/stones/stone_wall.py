@@ -174,7 +174,6 @@ def _squared(counts, overlap, scatter, draw):
 
 
 def _irregular(counts, overlap, scatter, draw):
-    """Irregular stones: (course, corners) of each, in lengths and heights of a stone."""
     from scipy.spatial import Voronoi
 
     columns, courses = counts
@@ -208,8 +207,8 @@ def _irregular(counts, overlap, scatter, draw):
 def _withoutShort(rings, corners, counts):
     """Stones whose short sides are closed, where all stones stay convex.
 
-    :param rings: corners of each stone, by number
-    :param corners: (x, z) of all, in lengths and heights of a stone
+    :param rings: corners of each stone, by number in ``corners`` (x, z), in lengths and heights of
+        a stone
     """
     edges = {tuple(sorted(pair)) for ring in rings for pair in zip(ring, ring[1:] + ring[:1])}
     long = lambda edge: math.dist(corners[edge[0]], corners[edge[1]])
@@ -232,12 +231,10 @@ def _withoutShort(rings, corners, counts):
 
 
 def _distinct(ring):
-    """A polygon without its corners that repeat the one before."""
     return ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
 
 
 def _convex(ring):
-    """Whether a polygon is convex, and has an area."""
     ring = _distinct(ring)
     along = ring - np.roll(ring, 1, axis=0)
     turns = np.cross(along, np.roll(along, -1, axis=0))

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files of ground accelerations: which formats are read, and whether a record drifts. This module
-needs no YADE.
+"""Files of ground accelerations: which formats are read, and whether a record drifts. No YADE is
+needed.
 
 The format is found from the contents, not from the name of the file:
 
 - **PEER NGA** (``.AT2``), **ESM** and ITACA (DYNA, ``.ASC``), **K-NET** and **KiK-net** (``.NS``,
   ``.EW``, ``.UD``, and with 1 below and 2 at the ground), **COSMOS** V1 and V2, the older form of
-  **CSMIP** (``points of accel data``), and **GeoNet** V1A and V2A, three components in one file:
-  see :mod:`masonry.scene.accelerograms.databases`.
+  **CSMIP**, and **GeoNet** V1A and V2A, three components in one file: see
+  :mod:`masonry.scene.accelerograms.databases`.
 - **Text** in columns (:mod:`masonry.texts`): one column, accelerations; or two, time [s] and
   acceleration; or three, two horizontal accelerations and the vertical one, below a head or a
   comment that names them (``# components: x y z``); or four, with a head that names the time too.
   Five and more numbers a line are samples one after the other, as are lines of the number of
-  samples, with or without the time between them, before the samples. Comments and heads may say
-  the unit, as in ``# unit: g`` or ``acceleration [cm/s2]``, and the time between samples,
-  ``# every: 0.005 s``.
+  samples, with or without the time between them, before the samples. Comments and heads may say the
+  unit, as in ``# unit: g`` or ``acceleration [cm/s2]``, and the time between samples, ``# every:
+  0.005 s``.
 
 g is 9.81 m/s². What a file says of itself is compared with what is in it: another number of
 samples, times that are not evenly apart, and numbers that are not finite are refused with the file,
@@ -97,8 +97,7 @@ class Drift:
     :param rise: of a straight line of least squares through the displacements, over the whole
         record [m]
     :param peakDisplacement: the largest amount [m]
-    :param lean: the constant acceleration with which the ground would have this velocity at the end
-        [m/s²]
+    :param lean: the constant acceleration that gives the ground this velocity at the end [m/s²]
     """
 
     endVelocity: float
@@ -108,7 +107,6 @@ class Drift:
     lean: float
 
     def sentence(self) -> str | None:
-        """What is wrong with the record, with its numbers, or None."""
         found = []
         end, rise = abs(self.endVelocity), abs(self.rise)
         if end > ENDS * self.peakVelocity:
@@ -128,20 +126,17 @@ class Drift:
 
 
 def drift(values: Numbers, every: float) -> Drift:
-    """How far a record drifts: velocity and displacement, integrated from rest.
+    """How far a record drifts: velocity and displacement, integrated from rest, exactly for
+    accelerations that change evenly between samples.
 
     A motion of the ground ends at rest, so the velocity at its end is 0; the criterion is 5 % of
     the largest velocity. A motion about one place has displacements to both sides, and a line of
     least squares through them hardly rises. An offset of the accelerations or of the velocity gives
     displacements whose line rises by all of the largest one, so the criterion is half of that. A
     record with a permanent displacement of the ground, near a fault, exceeds it rightly. Nothing is
-    corrected: processed records of both databases need none, and what is right for another one
-    depends on why it drifts.
+    corrected: what is right depends on why a record drifts.
 
-    The integrals are exact for accelerations that change evenly between samples.
-
-    :param values: samples, in m/s² for the units of the result; ``every``: the time between two of
-        them [s]
+    :param values: samples [m/s²]; ``every``: the time between two of them [s]
     """
     a = np.asarray(values, float)
     v = np.concatenate([[0.0], np.cumsum(0.5 * every * (a[:-1] + a[1:]))])

@@ -1,26 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Files of ground accelerations as databases give them.
 
-- **PEER NGA**: some lines of header, of which one has the number of samples and the time between
-  them, ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit; then the
-  samples, any number of them a line.
+- **PEER NGA**: a line of the header has the number of samples and the time between them, ``NPTS=
+  4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit; then the samples, any number
+  of them a line.
 - **ESM** and ITACA (DYNA): 64 lines of header, each a key, a colon and a value, among them
   ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS`` (``cm/s^2``) and ``DATA_TYPE``. One sample a line.
-- **K-NET** and **KiK-net**: 17 lines of header with ``Sampling Freq(Hz)``, ``Duration Time(s)``
-  and ``Scale Factor``, by which the counts that follow are Gal; their mean is the offset of the
+- **K-NET** and **KiK-net**: 17 lines of header with ``Sampling Freq(Hz)``, ``Duration Time(s)`` and
+  ``Scale Factor``, by which the counts that follow are Gal; their mean is the offset of the
   instrument and is taken away.
 - **COSMOS** V1 and V2 (format 1.20): for each series a text, 100 whole numbers, 100 real numbers,
   of which number 62 is the time between samples [ms], comments, and the samples below a line with
-  their number, quantity, unit (code in brackets) and format. Velocities and displacements are
-  passed over. The older form of **CSMIP** says ``points of accel data equally spaced at`` instead.
-- **GeoNet** V1A and V2A: three components one after the other, each of 16 lines of text, 4 lines
-  of 10 whole numbers, 6 lines of 10 real numbers, and accelerations, velocities and displacements
-  in mm and s, 10 of 8 characters a line.
+  their number, quantity, unit (code in brackets) and format. The older form of **CSMIP** says
+  ``points of accel data equally spaced at`` instead.
+- **GeoNet** V1A and V2A: three components one after the other, each of 16 lines of text, 4 lines of
+  10 whole numbers, 6 lines of 10 real numbers, and accelerations, velocities and displacements in
+  mm and s, 10 of 8 characters a line.
 
-A file of three components gives them as two horizontal ones in its order, then the vertical one.
+Velocities and displacements are passed over. Three components are two horizontal ones in the order
+of the file, then the vertical one.
 """
 
 import re
+from dataclasses import dataclass
 from typing import Any
 
 from ...arguments import shown
@@ -35,7 +37,7 @@ _UP = 400, 401, 402  # COSMOS, table 13: orientations that are vertical
 
 
 def _counted(file, values, expected, key, line):
-    """Values of which there are as many as the file says, and enough."""
+    """Values, if there are as many as the file says, and enough."""
     if len(values) != expected:
         raise file.refused(
             f"{key} is {expected}, and the file has {len(values)} values: is it cut off, or were"
@@ -50,16 +52,13 @@ def _counted(file, values, expected, key, line):
     return values
 
 
-def _samples(file, first, last=None):
-    """All numbers of the lines from one to another, counted from 1."""
-    found = []
-    for line, text in enumerate(file.lines[first - 1 : last], first):
-        found += file.numbers(text, line)
-    return found
+def _samples(file, first):
+    """All numbers from a line on, counted from 1."""
+    lines = enumerate(file.lines[first - 1 :], first)
+    return [number for line, text in lines for number in file.numbers(text, line)]
 
 
 def peer(file: TextFile, at: int):
-    """The record of a file of PEER, whose line ``at`` has NPTS."""
     unit, head = None, file.lines[at - 1]
     for line, text in enumerate(file.lines[:at], 1):
         isAcceleration = re.search(r"\bACC", text, re.I)
@@ -67,10 +66,7 @@ def peer(file: TextFile, at: int):
             continue
         if not isAcceleration:
             raise file.refused(f"it must hold accelerations, and says {shown(text.strip())}", line)
-        try:
-            unit = unitSaid(text) or unit
-        except ValueError as error:
-            raise file.refused(str(error), line) from None
+        unit = file.read(unitSaid, text, line) or unit
     count = re.search(r"\bNPTS\s*=\s*(\d+)", head, re.I)
     every = re.search(rf"\bDT\s*=\s*{_NUMBER}", head, re.I)
     if both := re.match(rf"\s*(\d+)\s*,?\s+{_NUMBER}\s*,?\s+NPTS\s*,\s*DT\b", head, re.I):
@@ -109,11 +105,7 @@ def esm(file: TextFile, at: int):
     kind, line = known["DATA_TYPE"]
     if kind.upper() != "ACCELERATION":
         raise file.refused(f"DATA_TYPE must be ACCELERATION, got {shown(kind)}", line)
-    word, line = known["UNITS"]
-    try:
-        unit = unitNamed(word)
-    except ValueError as error:
-        raise file.refused(str(error), line) from None
+    unit = file.read(unitNamed, *known["UNITS"])
     every = interval(file, *known["SAMPLING_INTERVAL_S"])
     count, line = known["NDATA"]
     if not count.isdecimal():
@@ -160,24 +152,38 @@ def _fixed(file, first, count, width):
     return _counted(file, found, count, "number of points", first - 1), line
 
 
-def _join(file, series):
-    """One component, or three of which the vertical one is last: pairs (samples, whether it is
-    vertical)."""
-    if len(series) == 1:
-        return series[0][0]
-    ups = [samples for samples, isUp in series if isUp]
-    lengths = {len(samples) for samples, _ in series}
-    if len(series) != 3 or len(ups) != 1 or len(lengths) != 1:
-        raise file.refused(
-            f"{len(series)} accelerations, {len(ups)} of them vertical: there must be one, or three"
-            " of one length with one vertical"
-        )
-    level = [samples for samples, isUp in series if not isUp]
-    return [list(sample) for sample in zip(*level, *ups)]
+@dataclass
+class _Series:
+    """The accelerations of one component, every so many seconds."""
+
+    samples: list[float]
+    every: float
+    unit: str
+    isUp: bool
+
+
+def _together(file, series):
+    """The samples of one component, or of three of which the vertical one is last, the time between
+    them and their unit."""
+    if not series:
+        raise file.refused("no series of accelerations was found in it")
+    alike = {(one.every, one.unit) for one in series}
+    if len(alike) > 1:
+        raise file.refused("its components differ in unit or in the time between samples")
+    level, ups = ([one.samples for one in series if one.isUp is up] for up in (False, True))
+    samples = series[0].samples
+    if len(series) > 1:
+        if len(series) != 3 or len(ups) != 1 or len({*map(len, level + ups)}) != 1:
+            raise file.refused(
+                f"{len(series)} accelerations, {len(ups)} of them vertical: there must be one, or"
+                " three of one length with one vertical"
+            )
+        samples = [list(sample) for sample in zip(*level, *ups)]
+    return samples, *alike.pop()
 
 
 def cosmos(file: TextFile, at: int):
-    series, units, steps, isUp, every = [], set(), set(), False, None
+    series, isUp, every = [], False, None
     line = 1
     while line <= len(file.lines):
         text = file.lines[line - 1]
@@ -190,7 +196,7 @@ def cosmos(file: TextFile, at: int):
         if headed:
             numbers, line = _fixed(file, line + 1, int(headed[1]), int(headed[3]))
             if headed[2].lower() == "integer":
-                isUp = numbers[53:54] and int(numbers[53]) in _UP
+                isUp = len(numbers) > 53 and int(numbers[53]) in _UP
             else:
                 every = numbers[61] / 1000 if len(numbers) > 61 else None
         elif data:
@@ -208,25 +214,15 @@ def cosmos(file: TextFile, at: int):
                     raise file.refused(
                         "real-header value 62, the time between samples, is not there", here
                     )
-                series.append(([factor * number for number in numbers], isUp))
-                units.add(unit)
-                steps.add(every)
+                samples = [factor * number for number in numbers]
+                series.append(_Series(samples, every, unit, isUp))
         else:
             line += 1
-    return _together(file, series, steps, units)
-
-
-def _together(file, series, steps, units):
-    """The components of a file, the time between their samples and their unit."""
-    if not series:
-        raise file.refused("no series of accelerations was found in it")
-    if len(steps) > 1 or len(units) > 1:
-        raise file.refused("its components differ in unit or in the time between samples")
-    return _join(file, series), steps.pop(), units.pop()
+    return _together(file, series)
 
 
 def csmip(file: TextFile, at: int):
-    series, steps, units = [], set(), set()
+    series = []
     pattern = (
         rf"\s*(\d+)\s+points of accel data equally spaced at\s*{_NUMBER}\s*sec,"
         r"\s*in\s+(.*?)\.?\s*\(\d+[FE](\d+)"
@@ -234,20 +230,17 @@ def csmip(file: TextFile, at: int):
     for line, text in enumerate(file.lines, 1):
         if not (found := re.match(pattern, text, re.I)):
             continue
-        try:
-            units.add(unitNamed(found[3]))
-        except ValueError as error:
-            raise file.refused(str(error), line) from None
-        steps.add(interval(file, found[2], line))
+        unit, every = file.read(unitNamed, found[3], line), interval(file, found[2], line)
         samples, _ = _fixed(file, line + 1, int(found[1]), int(found[4]))
         before = " ".join(file.lines[max(0, line - 60) : line])
         chan = re.findall(r"Chan\s+\d+:\s*(\S+)", before, re.I)
-        series.append((samples, bool(chan) and chan[-1].lower().startswith(("up", "down", "vert"))))
-    return _together(file, series, steps, units)
+        isUp = bool(chan) and chan[-1].lower().startswith(("up", "down", "vert"))
+        series.append(_Series(samples, every, unit, isUp))
+    return _together(file, series)
 
 
 def geonet(file: TextFile, at: int):
-    series, steps, line = [], set(), 1
+    series, line = [], 1
     while line + 25 <= len(file.lines) and re.search("accelerogram", file.lines[line - 1], re.I):
         corrected = not re.match(r"\s*uncorrected", file.lines[line - 1], re.I)
         component = (file.lines[line + 11].split() + ["", ""])[1]
@@ -260,9 +253,9 @@ def geonet(file: TextFile, at: int):
         samples, line = _fixed(file, after, int(counts[0]), 8)
         for count in counts[1:]:  # velocities, displacements
             line = _fixed(file, line, int(count), 8)[1] if count else line
-        series.append(([0.1 * sample for sample in samples], component.lower() == "up"))
-        steps.add(every)
-    return _together(file, series, steps, {"cm/s²"})
+        samples = [0.1 * sample for sample in samples]
+        series.append(_Series(samples, every, "cm/s²", component.lower() == "up"))
+    return _together(file, series)
 
 
 #: By its name: what a line of a format's header has, among how many first lines, and its reader, of

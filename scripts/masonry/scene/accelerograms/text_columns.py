@@ -82,7 +82,7 @@ class _Said:
         for row in table.comments:
             self._comment(row)
         for row in table.heads:
-            self._take("unit", self._unit(" ".join(row.cells), row.line), row.line)
+            self._takeUnit(" ".join(row.cells), row.line)
         if table.heads and table.rows:
             self._columns(table.heads[-1], len(table.rows[0].cells))
         for (key, _), value in self._known.items():
@@ -95,15 +95,12 @@ class _Said:
             raise self._file.refused(f"it says {key} twice", line)
         self._known[key, True] = value
 
-    def _unit(self, text, line):
-        try:
-            return unitSaid(text)
-        except ValueError as error:
-            raise self._file.refused(str(error), line) from None
+    def _takeUnit(self, text, line):
+        self._take("unit", self._file.read(unitSaid, text, line), line)
 
     def _comment(self, row):
         [text] = row.cells
-        self._take("unit", self._unit(text, row.line), row.line)
+        self._takeUnit(text, row.line)
         found = re.fullmatch(r"(every|components)\s*[:=]\s*(.*?)", text, re.I)
         if found and found[1].lower() == "every":
             word = re.sub(r"\s*s$", "", found[2])
@@ -115,7 +112,6 @@ class _Said:
             self._take("width", 3, row.line)
 
     def _columns(self, head, width):
-        """What a head of names says of columns."""
         text = re.sub(r"\s*[\[(][^\])]*[\])]", "", "\t".join(head.cells)).lower()
         names = [re.sub(r"_(?:s|ms2|g|cms2|m/s2)$", "", name.strip()) for name in text.split("\t")]
         names = [name for name in names if name]
@@ -161,7 +157,6 @@ def _count(rows):
 
 
 def _refuseCount(file, rows, values):
-    """Refuse a first number that looks like a count and is none."""
     line, cells = rows[0]
     whole = [len(c) == 1 and c[0].isdigit() for _, c in rows]
     if whole[0] and not any(whole[1:]) and values[0][0] >= FEWEST:
@@ -187,7 +182,8 @@ def _evenly(file, times, words):
     """
     mean = (times[-1] - times[0]) / (len(times) - 1)
     # the last digit of the time that is written with most of them
-    last = min(Decimal(_plain(word)).as_tuple().exponent for _, word in words)
+    plain = (re.sub("[Dd]", "e", word) for _, word in words)
+    last = min(Decimal(word).as_tuple().exponent for word in plain)
     digit = float(Decimal(1).scaleb(last))
     allowed = max(UNEVEN * mean, ROUNDED * digit)
     for before, time, (line, _) in zip(times, times[1:], words[1:]):
@@ -200,7 +196,3 @@ def _evenly(file, times, words):
             continue
         raise file.refused(f"its times are not evenly apart: {time:g} s {why}", line)
     return mean
-
-
-def _plain(word):
-    return re.sub("[Dd]", "e", word)
