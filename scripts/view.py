@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run in 3-D in a browser.
+"""A run in the window of ParaView, in a ready state, or in a browser.
 
-    /usr/bin/python3 scripts/view.py results/wall_comp4                   # writes view.html there
+    /usr/bin/python3 scripts/view.py results/wall_comp4
     /usr/bin/python3 scripts/view.py results/wall_comp4 --at 12mm
     /usr/bin/python3 scripts/view.py results/wall_comp4 --html wall.html
 """

@@ -212,7 +212,8 @@ def modules():
         path = importlib.import_module(package).__path__
         for one in pkgutil.walk_packages(path, package + "."):
             name = one.name.rpartition(".")[2]
-            if not name.startswith("_"):
+            # ParaView alone imports its macro, in its own Python
+            if not name.startswith("_") and name != "paraview_macro":
                 found.append(one.name)
     return found
 

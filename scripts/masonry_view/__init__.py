@@ -12,7 +12,7 @@
 - :mod:`masonry_view.comparison`: figures of several runs
 - :mod:`masonry_view.model`: the model of the 3-D picture, how blocks move and what joints do in all
   frames; :mod:`masonry_view.page`: a page that shows it in any browser and in a notebook
-- :mod:`masonry_view.viewer`: the program that writes it
+- :mod:`masonry_view.viewer`: the run in ParaView, in which :mod:`masonry_view.paraview_macro` works
 - :mod:`masonry_view.notebook` and :mod:`masonry_view.notebook_scene`: a run, its curve and a scene
   in a notebook
 """

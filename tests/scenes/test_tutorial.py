@@ -61,7 +61,7 @@ def test_every_command_of_the_tutorial(tmp_path):
     commands = re.findall(r"(?m)^    ((?:yade|/usr/bin/python3) \S.*)$", texts)
     assert len(commands) == 5
     for command in commands:
-        if "view.py" in command:  # of a run of the notebook: tests/view/test_view.py
+        if "view.py" in command:  # tests/view/test_view.py has ParaView
             continue
         words = dict(shell=True, capture_output=True, text=True, timeout=280)
         run = subprocess.run(command, cwd=tmp_path, **words)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program that writes the page of a run."""
+"""Runs in the window of ParaView."""
 
 from hosted import *
 from masonry_view import viewer
@@ -13,16 +13,24 @@ def wall(tmp_path_factory):
     return str(out)
 
 
-def test_the_page_stands_in_the_folder_and_begins_at_the_place(wall, monkeypatch):
-    given = []
-    monkeypatch.setattr(viewer.page, "page", lambda *words: given.append(words) or "a page")
+def test_the_window_is_opened_on_the_macro(wall, monkeypatch):
+    called = []
+
+    def run(words, env, **settings):
+        called.append((words, json.load(open(env["MASONRY_VIEW"]))))
+
+    monkeypatch.setattr(viewer.shutil, "which", lambda name: "/bin/true")
+    monkeypatch.setattr(viewer.subprocess, "run", run)
     assert viewer.main([wall, "--at", "3mm", "--magnify", "7"]) == 0
-    assert given == [(wall, viewer.frameNear(wall, "3"), 7.0)]
-    assert open(os.path.join(wall, "view.html")).read() == "a page"
+    (((program, script), run),) = called
+    assert program == "/bin/true" and script.endswith("paraview_macro.py")
+    assert run["folder"] == wall and run["magnification"] == 7
+    assert run["time"] in viewer.frameTimes(wall)
 
 
 def test_places_in_a_run(wall):
     times = viewer.frameTimes(wall)
+    assert viewer.frameNear(wall, None) == len(times) - 1
     assert viewer.frameNear(wall, f"{times[1]:.12g}s") == 1
     moved = viewer.readCurve(wall)
     middle = len(times) // 2
@@ -37,6 +45,12 @@ def test_places_in_a_run(wall):
     ):
         with pytest.raises(Refused, match=message):
             viewer.frameNear(wall, text)
+
+
+def test_without_paraview_the_packages_are_named(wall, monkeypatch):
+    monkeypatch.setattr(viewer.shutil, "which", lambda name: None)
+    with pytest.raises(Refused, match="apt-get install --no-install-recommends paraview"):
+        viewer.inParaView(wall, None, None)
 
 
 @pytest.mark.parametrize(
