@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The model of the 3-D picture of a run, which its page and its report show: its blocks, how they
-move, and what its joints do."""
+"""The model of the 3-D picture of a run: its blocks, how they move, and what its joints do.
+
+The page (:mod:`masonry_view.page`), the report and ParaView's window show this.
+"""
 
 from typing import NamedTuple
 
@@ -40,7 +42,7 @@ class Model:
       frames that were read, from 0; ``count``: of all frames of the run
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
     - ``bodies`` (B): ids of the blocks; ``centres`` (B, 3): means of their points [m]; ``looks``
-      (B): PLATEN (also supports and the like), BRICK or GROUND; ``rigid`` (B)
+      (B): PLATEN (also supports and the like), BRICK or GROUND; ``rigid`` (B): whether it is rigid
     - ``framed`` (N): whether a point is in the picture: none of the ground on which blocks fall
     - ``triangles`` (n, 3): surfaces of the blocks, counter-clockwise from outside, and ``edges``
       (n, 2): their edges, both as numbers of points
@@ -54,22 +56,29 @@ class Model:
     taken off all others.
     """
 
-    def __init__(self, directory, chosen=None):
+    def __init__(self, directory, number=None, chosen=None):
         """
         :param directory: folder of results
+        :param number: of the only frame to read, from 0; None: all
         :param chosen: function of the number of frames and of the number of blocks that gives the
             numbers of the frames to read; None: all
-        :raises Refused: if the folder has no frames, or if they are damaged
+        :raises Refused: if the folder has no frames, if they are damaged, or without that frame
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
             self.title = escapeControls(self.run.get("title") or directory)
             times = self._times()
-            self.count = len(times)
-            self._build(readFrame(directory, "blocks", 0, ["body", "cells", "points"]))
-            self.numbers = list(range(self.count))
+            self.count = count = len(times)
+            if number is not None and not 0 <= number < count:
+                raise Refused(
+                    f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}"
+                )
+            self.numbers = list(range(count)) if number is None else [number]
+            self._build(
+                readFrame(directory, "blocks", self.numbers[0], ["body", "cells", "points"])
+            )
             if chosen:
-                self.numbers = list(chosen(self.count, len(self.bodies)))
+                self.numbers = list(chosen(count, len(self.bodies)))
             self.times = [times[n] for n in self.numbers]
             self._move()
 
@@ -93,7 +102,7 @@ class Model:
         return times
 
     def _build(self, first):
-        triangles, cells, rigid = readSurfaces(self.directory)
+        triangles, cells, rigid = readSurfaces(self.directory, self.numbers[0])
         self.points = first["points"]
         self.bodies, block = np.unique(first["body"], return_inverse=True)
         self.owner = np.empty(len(self.points), int)
@@ -159,6 +168,7 @@ class Model:
         return [own for own, look in zip(blocks, self.looks) if look != GROUND]
 
     def _means(self, values):
+        """Means of the rows of points by their blocks."""
         sums = [np.bincount(self.owner, column) for column in values.T]
         return np.column_stack(sums) / np.bincount(self.owner)[:, None]
 
