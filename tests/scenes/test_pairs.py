@@ -24,7 +24,7 @@ ELASTIC = materials.Masonry(
     {"bed": MasonryJoint(elastic=True, normalStiffness=1e10, shearStiffness=5e9)},
 )
 YIELDING = {
-    "dry": materials.dry(friction=30.0, normalStiffness=1e10, density=2000),
+    "dry": materials.dry(friction=3.0, normalStiffness=1e10, density=2000),
     "bonded": materials.calciumSilicate(),
 }
 #: Of blocks x and z of two opposite corners [m].
