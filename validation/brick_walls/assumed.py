@@ -38,11 +38,11 @@ class Rule:
 
 RULES = {
     "base": Rule(),
-    "full heads": Rule(heads=1.0),
-    "half E": Rule(stiffness=0.5),
-    "toe 1.4": Rule(toe=1.4),
-    "G/E 0.22": Rule(shearing=0.22),
-    "no heads": Rule(heads=0.0),
+    "full-heads": Rule(heads=1.0),
+    "half-E": Rule(stiffness=0.5),
+    "toe-1.4": Rule(toe=1.4),
+    "shear-0.22": Rule(shearing=0.22),
+    "no-heads": Rule(heads=0.0),
 }
 
 
