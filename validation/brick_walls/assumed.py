@@ -44,6 +44,9 @@ RULES = {
     "shear-0.22": Rule(shearing=0.22),
     "no-heads": Rule(heads=0.0),
 }
+#: What the 17 walls chose.
+CHOSEN = "chosen"
+RULES[CHOSEN] = Rule(stiffness=0.5, shearing=0.22)
 
 
 @dataclass(frozen=True)

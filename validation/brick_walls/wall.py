@@ -14,7 +14,7 @@ from masonry.scene import options
 
 parser = options.parser(__doc__, until=1)
 parser.add_argument("--wall", metavar="N", required=True, help="number of the wall in walls.csv")
-parser.add_argument("--rule", choices=list(assumed.RULES), default="base")
+parser.add_argument("--rule", choices=list(assumed.RULES), default=assumed.CHOSEN)
 args = parser.parse_args()
 
 guess = assumed.Guess(assumed.read()[args.wall], assumed.RULES[args.rule])
