@@ -6,7 +6,7 @@ says how each number is defined.
 /usr/bin/python3 validation/brick_walls/compare.py predict results/brick_walls/push
 
 The first prints a table of the rules and what leaving out one campaign says of them; the second
-writes predictions.csv and prints its comparison with the 17.
+prints what the predictions say of the 17, and writes predictions.csv where there is none.
 """
 
 import csv
@@ -192,8 +192,9 @@ def predict(folder):
             if number in tests:
                 held[name] += ends[name][0] <= tests[number][name] <= ends[name][1]
         lines.append(line)
-    with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
-        csv.writer(f, lineterminator="\n").writerows([head, *lines])
+    if not os.path.exists(PREDICTIONS):
+        with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
+            csv.writer(f, lineterminator="\n").writerows([head, *lines])
     print(NAMES, *compared(made, tests), "held", held)
     print({name: f"{math.exp(m):.2f}, {s:.2f}" for name, (m, s) in error.items()})
 
