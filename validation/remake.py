@@ -419,10 +419,19 @@ def ofStudies():
                     for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks"))
                 ),
             ),
-            ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"),
+            ("stone_walls/table.md", "stone_walls/peaks.png"),
             (*own("stone_walls"), *RIGID, *CYCLIC),
             70,
             ("validation/stone_walls/push", "validation/stone_walls/cycles"),
+        ),
+        Result(
+            "stone_walls/opened",
+            (
+                program("stone_walls/results.py", "--opened"),
+                program("stone_walls/figures.py", "opened"),
+            ),
+            ("stone_walls/opened.md", "stone_walls/opened.png"),
+            (*own("stone_walls"), "validation/stone_walls/predictions.csv"),
         ),
         Result(
             "stone_walls/cracks",

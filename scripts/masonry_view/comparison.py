@@ -10,7 +10,7 @@ import numpy as np
 from masonry.arguments import FilePath
 from masonry.errors import Refused
 from masonry.terminal import say
-from masonry.numbers import drawing
+from masonry.numbers import curves, drawing
 from masonry.numbers.files import program, readCurve, readRun
 from masonry.texts import TextFile
 
@@ -18,6 +18,9 @@ from masonry.texts import TextFile
 #: 2008), and dashes.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
 DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
+#: Columns of shear forces, and those of the base that the check of a test reads.
+SHEARS = "base_shear_kN", "top_shear_kN", "base_V_x_kN"
+N, V, M = "base_N_kN", "base_V_x_kN", "base_M_y_kNm"
 
 
 def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -70,7 +73,7 @@ def readRuns(
     :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
     :param y: as ``x``; None: the first one of this entry
     """
-    curves, labels = [], None
+    pairs, labels = [], None
     for directory in directories:
         data, spec = readCurve(directory), readRun(directory).get("figure")
         if not spec and not (x and y):
@@ -85,8 +88,8 @@ def readRuns(
                 raise Refused(
                     f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}"
                 )
-        curves.append((np.array(data[x]), np.array(data[y])))
-    return curves, labels
+        pairs.append((np.array(data[x]), np.array(data[y])))
+    return pairs, labels
 
 
 def _label(column, spec):
@@ -126,24 +129,52 @@ def compare(
     if len(labels) > count:
         raise Refused(f"--label: {len(labels)} labels for {count} curves")
     names = [*labels, *_names(directories, measured)[len(labels) :]]
-    curves, axesLabels = readRuns(directories, x, y)
+    runs, axesLabels = readRuns(directories, x, y)
     tests = [readMeasured(text) for text in measured]
     if axesLabels is None:
         axesLabels = tests[0][2]
+    for text, (_, forces, _) in zip(measured, tests):
+        for directory in directories:
+            _warnOfRocking(directory, text, float(np.abs(forces).max()), y)
     try:
-        _draw(out, tests, curves, names, axesLabels, title)
+        _draw(out, tests, runs, names, axesLabels, title)
     except OSError as error:
         raise Refused(f"cannot write {out}: {error.strerror}") from None
     return out
 
 
-def _draw(out, tests, curves, names, labels, title):
+def _warnOfRocking(directory, text, peak, y=None):
+    """Warn if a test carried more than blocks without tension can under the vertical load of a
+    run of a wall: N L/(2 H0), with N and H0 = M/V of the base where the run has its peak.
+
+    :param text: name of the test
+    :param peak: measured [kN]
+    :param y: column of the curve of the run; None: that of its figure
+    """
+    run, data = readRun(directory), readCurve(directory)
+    wall, spec = run.get("wall"), run.get("figure")
+    shown = y or spec["y"][0]["column"]
+    if not wall or shown not in SHEARS or not {N, V, M} <= set(data) or not any(data[V]):
+        return
+    at = int(np.abs(data[V]).argmax())
+    normal, arm = abs(data[N][at]), abs(data[M][at] / data[V][at])
+    most = curves.rocking(normal, wall["length_m"], arm)
+    if peak > (1 + curves.TOLERANCE) * most:
+        say(
+            f"warning: {text} reaches {peak:.4g} kN, more than the vertical load of {directory}"
+            f" can give: blocks without tension carry at most N L/(2 H0) = {most:.4g} kN with N ="
+            f" {normal:.4g} kN, L = {wall['length_m']:.4g} m and H0 = {arm:.4g} m. Bond carried"
+            " the rest, or the vertical load or the support of the test is another one"
+        )
+
+
+def _draw(out, tests, runs, names, labels, title):
     with drawing.picture(out, 7, 4.6, 150) as figure:
         axes = figure.subplots()
         for n, (a, b, _) in enumerate(tests):
             look = dict(color="0.15", lw=1.0, ls=DASHES[n % len(DASHES)], zorder=1.5)
-            axes.plot(a, b, **look, label=names[len(curves) + n])
-        for n, (a, b) in enumerate(curves):
+            axes.plot(a, b, **look, label=names[len(runs) + n])
+        for n, (a, b) in enumerate(runs):
             colour, dash = COLOURS[n % len(COLOURS)], DASHES[n // len(COLOURS) % len(DASHES)]
             axes.plot(a, b, color=colour, lw=1.3, ls=dash, label=names[n], zorder=2)
         for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):

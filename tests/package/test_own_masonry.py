@@ -132,6 +132,25 @@ def test_outside_its_range_a_formula_is_a_warning(fc, said, capsys):
     assert not capsys.readouterr().out
 
 
+@mark.parametrize(
+    "changes, strain",
+    [
+        (dict(E=1.9e9), ""),
+        (dict(E=0.7e9), "2.9 % (2 fc/E)"),  # E/fc = 70, as of prisms of stone in lime mortar
+        (dict(fc=None, fk=10e6, E=2e9), "1.2 % (2 fc/E)"),
+        (dict(peak_strain=0.02), "2 % (peak_strain)"),
+        (materials.ntc2018("rubble", "LC2") | dict(E=0.2e9), "1.2 % (2 fc/E)"),
+    ],
+)
+def test_a_modulus_with_which_masonry_would_shorten_too_much_is_questioned(changes, strain, capsys):
+    made = clay(**dict(dict(fc=10e6, Gc=1e6), **changes))
+    printed = capsys.readouterr().out
+    assert (f"shortens by {strain} before it crushes" in printed) == bool(strain)
+    if "G" not in changes:
+        modulus = changes.get("E", 4e9) / 2.4
+        assert f"masonry has G = {modulus:.4g} Pa, 0.42 E" in sources(made)["bed.shearStiffness"]
+
+
 def test_other_strengths_are_converted_and_said():
     bed = clay(fc=None, fk=6e6).joints["bed"]
     assert bed.compressiveStrength == approx(7.2e6, rel=1e-12)

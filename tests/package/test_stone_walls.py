@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Predictions of stone walls see nothing that was measured in the tests, and are of what the rules
-say."""
+"""Predictions of walls of stone and of bricks see nothing that was measured in the tests, and are of
+what the rules say."""
 
 from usual import *
+import assumed  # first: it finds the modules of the stone walls
 import codes
 import rules
-from masonry import bricks
+from masonry import bricks, materials
 
 LAST_INPUT = "LMTvert [mm]"
 
@@ -61,3 +62,29 @@ def test_what_hand_calculation_says_of_a_wall():
     row = next(row for row in codes.rows() if row["ID"] == "1")
     strength = 104.8 * 1000 / (2 * 1325) * (1 - 1.15 * 0.524 / 73)
     assert codes.flexure(codes.read(row), 1.15) / 1e3 == approx(strength, rel=1e-3)
+
+
+def test_rules_of_bricks_see_no_results(tmp_path, monkeypatch):
+    seen = assumed.read()
+    assert len(seen) == 52 and len(assumed.known()) == 17
+    with open(assumed.WALLS, encoding="utf-8", newline="") as f:
+        head, *rows = csv.reader(f)
+    inputs = head.index("mode")
+    rows = [row[:inputs] + ["nothing"] * (len(row) - inputs) for row in rows]
+    path = tmp_path / "walls.csv"
+    with open(path, "w", encoding="utf-8", newline="") as f:
+        csv.writer(f).writerows([head, *rows])
+    monkeypatch.setattr(assumed, "WALLS", str(path))
+    assert assumed.read() == seen
+
+
+@mark.parametrize("wall", ["1", "26", "187", "193"])
+def test_bricks_fill_the_wall_and_fit_their_materials(wall):
+    row = assumed.read()[wall]
+    for rule in assumed.RULES.values():
+        guess = assumed.Guess(row, rule)
+        made = guess.bricks(bricks)
+        assert made.high == approx((row.length, row.thickness, row.height))
+        bed, head = (guess.masonry(materials).joints[name] for name in ("bed", "head"))
+        assert head.cohesion == approx(rule.heads * row.filled * bed.cohesion)
+        assert bed.compressiveStrength == approx(rule.toe * row.fc)

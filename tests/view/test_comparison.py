@@ -62,6 +62,21 @@ def test_measured_curves_as_people_have_them(tmp_path, text, x, y):
     assert (found[0].tolist(), found[1].tolist(), found[2]) == (x, y, ["d", "F"])
 
 
+@mark.parametrize("peak, warned", [(50.9, False), (-51.1, True)])
+def test_a_test_that_carries_more_than_its_vertical_load_can_give(
+    tmp_path, drawn, capsys, peak, warned
+):
+    # N L/(2 H0) = 100 * 1 / (2 * 1) = 50 kN, with H0 = M/V = 40/40
+    columns = ["u_mm", "base_shear_kN", "base_N_kN", "base_V_x_kN", "base_M_y_kNm"]
+    rows = [[0, 0, -100, 0, 0], [1, 40, -100, 40, 40], [2, 30, -100, 30, 60]]
+    figure = {**FIGURE, "y": [axis("base_shear_kN")]}
+    run = writeRun(tmp_path / "r", columns, rows, figure=figure, wall={"length_m": 1.0})
+    (tmp_path / "t.csv").write_text(f"d,F\n0,0\n1,{peak}\n")
+    comparison.compare([run], [f"{tmp_path}/t.csv:d:F"], out="p.png")
+    printed = capsys.readouterr().out
+    assert ("at most N L/(2 H0) = 50 kN" in printed) == warned
+
+
 def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
     folder = writeRun(tmp_path, ["time_s", "top_mm"], [[0, 1], [1, -2]])
     with raises(Refused, match="name the columns by --x and --y"):

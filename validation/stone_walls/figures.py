@@ -2,10 +2,11 @@
 """Figures of the stone walls.
 
 /usr/bin/python3 validation/stone_walls/figures.py peaks STUDY CYCLES
+/usr/bin/python3 validation/stone_walls/figures.py opened
 /usr/bin/python3 validation/stone_walls/figures.py cracks RUN [RUN ...]
 
-The first writes peaks.png, predicted over measured peaks; the second cracks.png, of runs of wall.py
-with all files.
+The first writes peaks.png, predicted over measured peaks of the 39 walls; the second opened.png,
+those of the 57; the third cracks.png, of runs of wall.py with all files.
 """
 
 import os
@@ -23,13 +24,31 @@ import results
 import rules
 from masonry.numbers.files import readRun
 
-COLOURS = {"E1": "tab:blue", "E": "tab:cyan", "C": "tab:orange", "D": "tab:red"}
+COLOURS = {
+    "E1": "tab:blue",
+    "E": "tab:cyan",
+    "C": "tab:orange",
+    "D": "tab:red",
+    "B": "tab:green",
+    "A": "tab:olive",
+}
 SHOWN = ("EN 1998-3:2005", "NTC 2018")
 
 
 def peaks(studies):
+    """peaks.png, of two studies."""
+    _peaks(results.predictions(*studies), results.measured(), "peaks.png")
+
+
+def opened(_):
+    """opened.png, of predictions.csv."""
+    tests = results.measured(results.OPENED, rules.BLIND)
+    _peaks(results.predicted(), tests, "opened.png")
+
+
+def _peaks(made, tests, name):
     """Predicted over measured peaks of this model and of two codes, a panel each."""
-    made, tests, walls = results.predictions(*studies), results.measured(), rules.read()
+    walls = rules.read()
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}
     figure, panels = plt.subplots(1, 3, figsize=(11, 4), sharey=True, constrained_layout=True)
     for panel, title in zip(panels, ("this model, 10 to 90 %", *SHOWN)):
@@ -49,10 +68,11 @@ def peaks(studies):
             xscale="log", yscale="log", title=title, xlabel="measured peak, mean of both sides, kN"
         )
     panels[0].set_ylabel("predicted peak, kN")
-    for kind, colour in COLOURS.items():
-        panels[2].plot([], [], "o", color=colour, markersize=4, label=kind)
+    there = {walls[wall].typology for wall in tests}
+    for kind in filter(there.__contains__, COLOURS):
+        panels[2].plot([], [], "o", color=COLOURS[kind], markersize=4, label=kind)
     panels[2].legend(title="typology")
-    figure.savefig(os.path.join(HERE, "peaks.png"), dpi=90)
+    figure.savefig(os.path.join(HERE, name), dpi=90)
 
 
 def cracks(folders):
@@ -72,4 +92,4 @@ def cracks(folders):
 
 
 if __name__ == "__main__":
-    {"peaks": peaks, "cracks": cracks}[sys.argv[1]](sys.argv[2:])
+    {"peaks": peaks, "opened": opened, "cracks": cracks}[sys.argv[1]](sys.argv[2:])

@@ -4,8 +4,11 @@ defined.
 
 /usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose
 /usr/bin/python3 validation/stone_walls/results.py results/stone_walls/{push,cycles}
+/usr/bin/python3 validation/stone_walls/results.py --opened
 
-The first compares the eight combinations of rules; the second writes predictions.csv and table.md.
+The first compares the eight combinations of rules; the second writes table.md;
+the third compares predictions.csv with the 57 walls whose results came afterwards, in opened.md.
+The second writes predictions.csv only where there is none: it stays as it was made blind.
 """
 
 import argparse
@@ -14,7 +17,7 @@ import math
 import os
 import sys
 from dataclasses import dataclass, fields
-from statistics import NormalDist, fmean, quantiles, stdev
+from statistics import NormalDist, fmean, quantiles, stdev, variance
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -108,9 +111,14 @@ def _secant(moved, force, share):
     return float(level / max(reached, 1e-6))
 
 
-def measured():
+PREDICTIONS = os.path.join(HERE, "predictions.csv")
+#: Results of the 57 walls that came after they had been predicted.
+OPENED = os.path.join(HERE, "reference", "opened.csv")
+
+
+def measured(path=rules.WALLS, numbers=rules.KNOWN):
     """By number of a wall, what was measured: dict of means of both sides by the names of
-    :class:`Numbers`, and each side."""
+    :class:`Numbers`, NaN: not measured."""
     columns = dict(
         peak="Vmax,{} [kN]",
         elastic="Kel,{} [kN/mm]",
@@ -120,14 +128,14 @@ def measured():
         collapse="dc,{} [%]",
     )
     found = {}
-    with open(rules.WALLS, encoding="utf-8-sig", newline="") as f:
+    with open(path, encoding="utf-8-sig", newline="") as f:
         for cells in csv.DictReader(f):
-            if cells["ID"] not in rules.KNOWN:
+            if cells["ID"] not in numbers:
                 continue
             own = {}
             for name, column in columns.items():
-                sides = [cells[column.format(sign)] for sign in "+-"]
-                own[name] = fmean(float(s) for s in sides if s)
+                sides = [float(s) for sign in "+-" if (s := cells[column.format(sign)])]
+                own[name] = fmean(sides) if sides else math.nan
             own["failure"] = float(cells["Failure type"])
             found[cells["ID"]] = own
     return found
@@ -154,7 +162,8 @@ def runs(folder):
 
 
 def spread(ratios):
-    """Mean and coefficient of variation."""
+    """Mean and coefficient of variation of what is not NaN."""
+    ratios = [one for one in ratios if not math.isnan(one)]
     mean = fmean(ratios)
     return mean, (stdev(ratios) / mean if len(ratios) > 1 else math.nan)
 
@@ -301,14 +310,17 @@ def write(made):
             laws = [own.cycles.get(law) for law in ("softening", "cyclic")]
             line += [f"{scale * one[what]:.3g}" if one else "" for one in laws]
         lines.append(line)
-    with open(os.path.join(HERE, "predictions.csv"), "w", encoding="utf-8", newline="") as f:
+    with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
         csv.writer(f, lineterminator="\n").writerows([head, *lines])
 
 
-def table(made):
-    """Lines of table.md: mean and coefficient of variation of predicted over measured, by typology
-    and for all 39."""
-    tests, walls = measured(), rules.read()
+def table(made, tests):
+    """Lines of a table: mean and coefficient of variation of predicted over measured, by typology
+    and for all.
+
+    :param tests: of :func:`measured`
+    """
+    walls = rules.read()
     of = lambda kind: [w for w in tests if kind in ("all", walls[w].typology)]
     kinds = [kind for kind in (*rules.TABLE, "all") if of(kind)]
     cell = lambda ratios: (
@@ -339,7 +351,7 @@ def table(made):
     right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
     yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}
-    for rule in said["1"]:
+    for rule in codes.RULES:
         peaks = {w: said[w][rule].peak for w in tests}
         drifts = {w: said[w][rule].drift for w in tests}
         for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):
@@ -354,15 +366,124 @@ def _type(prediction):
     return {"flexure": 1.0, "shear": 0.0, "sliding": 0.0}.get(prediction.failure)
 
 
+# -- the 57 walls whose results came afterwards ----------------------------------------------------
+
+SHOWN = "peak", "effective", "ultimate"  # whose intervals opened.md has
+
+
+def predicted():
+    """predictions.csv, as :func:`predictions` gave it: dict of :class:`Prediction` by wall."""
+    column = lambda name: f"{name}_{UNITS[name].replace('/', '_per_').replace('%', 'percent')}"
+    types = {text: value for value, text in TYPES.items()}
+    made = {}
+    with open(PREDICTIONS, encoding="utf-8", newline="") as f:
+        for cells in csv.DictReader(f):
+            of = lambda head: {name: float(cells[head(name)]) for name in NAMES}
+            best = {**of(column), "failure": types[cells["failure"]]}
+            ends = (of(lambda name: f"{name}_{end}") for end in ("low", "high"))
+            sides = float(cells["peak_plus_kN"]), float(cells["peak_minus_kN"])
+            made[cells["ID"]] = Prediction(best, *ends, int(cells["draws"]), sides, {})
+    return made
+
+
+def ratiosOf(made, tests, name):
+    """Measured over predicted values of a quantity by wall, where it was measured."""
+    found = {wall: own[name] / made[wall].best[name] for wall, own in tests.items()}
+    return {wall: ratio for wall, ratio in found.items() if not math.isnan(ratio)}
+
+
+def fourOfFive(ratios, campaigns):
+    """The 10 and 90 % quantiles of ratios, and how many of them such quantiles of the other
+    campaigns hold.
+
+    :param ratios: by wall; ``campaigns``: name of the campaign by wall
+    """
+    ends = lambda values: quantiles(values, n=10, method="inclusive")[::8]
+    held = 0
+    for wall, ratio in ratios.items():
+        low, high = ends([r for w, r in ratios.items() if campaigns[w] != campaigns[wall]])
+        held += low <= ratio <= high
+    return *ends([*ratios.values()]), held
+
+
+def opened():
+    """Lines of opened.md."""
+    made, blind = predicted(), measured(OPENED, rules.BLIND)
+    tests = {**measured(), **blind}
+    yield "**The 57 walls, as they were predicted**\n"
+    yield from table(made, blind)
+    plain = {wall: own for wall, own in blind.items() if own["failure"] != 0.5}
+    right = sum(made[wall].best["failure"] == own["failure"] for wall, own in plain.items())
+    yield f"\nOf {len(plain)} failure types other than hybrid {right} are right."
+    yield "\n**All 96 walls**\n"
+    yield from table(made, tests)
+    yield "\n**Intervals for four of five**\n"
+    yield from _intervals(made, blind, tests)
+    yield "\n**After the answers**\n"
+    yield from _afterwards(made, tests)
+
+
+def _intervals(made, blind, tests):
+    """Lines: coverage of the intervals that were predicted, and intervals of all walls."""
+    yield (
+        "| | held, of the 57 | four of five of all 96, measured over predicted |"
+        " held, if fitted to the other campaigns |"
+    )
+    yield "|---|---|---|---|"
+    error, campaigns = errors(made), {wall: row.campaign for wall, row in rules.read().items()}
+    for name in SHOWN:
+        ratios, every = ratiosOf(made, blind, name), ratiosOf(made, tests, name)
+        ends = {wall: expected(made[wall], error)[name] for wall in ratios}
+        held = sum(low <= blind[wall][name] <= high for wall, (low, high) in ends.items())
+        low, high, others = fourOfFive(every, campaigns)
+        yield (
+            f"| {MEANINGS[name]} | {held} of {len(ratios)} | {low:.2f} to {high:.2f} |"
+            f" {others} of {len(every)} |"
+        )
+
+
+def _afterwards(made, tests):
+    """Lines: scatter of walls with equal inputs, and walls that carry more than N L/2H0."""
+    walls, more = rules.read(), {}
+    same = [group for group in rules.twins([*walls]).values() if len(group) > 1]
+    logs = [[math.log(tests[wall]["peak"]) for wall in group] for group in same]
+    free = sum(len(own) - 1 for own in logs)
+    scatter = math.sqrt(sum((len(own) - 1) * variance(own) for own in logs) / free)
+    yield (
+        f"Walls with equal inputs, {sum(map(len, same))} in {len(same)} groups: peaks scatter by"
+        f" {100 * scatter:.0f} %.\n"
+    )
+    yield "| carries more than N L/2H0 | measured, kN | N L/2H0, kN | ratio |"
+    yield "|---|---|---|---|"
+    for row in codes.rows():
+        wall, peak = codes.read(row), tests[row["ID"]]["peak"]
+        given = 1e-3 * curves.rocking(wall.force, wall.length, wall.span)
+        if peak / given >= 1 + curves.TOLERANCE - 5e-4:  # to three digits
+            more[row["ID"]] = given
+            name = f"{row['Reference']} {row['Test unit name']}"
+            yield f"| {name} | {peak:.1f} | {given:.1f} | {peak / given:.2f} |"
+    rest = [made[wall].best["peak"] / tests[wall]["peak"] for wall in tests if wall not in more]
+    mean, cov = spread(rest)
+    yield (
+        f"\nWithout these {len(more)}, predicted over measured peaks have a mean of {mean:.2f} and"
+        f" a coefficient of variation of {100 * cov:.1f} %."
+    )
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--choose", metavar="STUDY")
+    parser.add_argument("--opened", action="store_true")
     parser.add_argument("studies", nargs="*", help="of push.py and of cycles.py")
     args = parser.parse_args()
+    if args.opened:
+        with open(os.path.join(HERE, "opened.md"), "w", encoding="utf-8") as f:
+            f.write("".join(line + "\n" for line in opened()))
     if args.choose:
         choose(args.choose)
     if args.studies:
         made = predictions(*args.studies)
-        write(made)
+        if not os.path.exists(PREDICTIONS):
+            write(made)
         with open(os.path.join(HERE, "table.md"), "w", encoding="utf-8") as f:
-            f.write("".join(line + "\n" for line in table(made)))
+            f.write("".join(line + "\n" for line in table(made, measured())))

@@ -245,17 +245,17 @@ class Guess:
             seed=self.sample,
         )
 
-    def masonry(self, materials):
+    def masonry(self, materials, **others):
         """Joints and stones.
 
-        :param materials: :mod:`masonry.materials`
+        :param materials: :mod:`masonry.materials`; ``others``: arguments in place of these rules'
         """
         row = self.row
         soft = row.typology == "D"
         young = max(row.Eb or 0.0, STIFFER * self.E)
         # what crushing takes up to the peak at the strain 2 fc/E is the least that it takes in all
         rising = self.fc**2 * self.stone[1] * (2 / self.E - 1 / young)
-        made = materials.masonry(
+        values = dict(
             E=self.E,
             unit_E=young,
             Gc=max(materials.compressiveFractureEnergy(self.fc)[0], TOUGH * rising),
@@ -268,6 +268,7 @@ class Guess:
             density=WEIGHT / GRAVITY,
             unit_ft=STONE_TENSION * row.fb if soft else None,
         )
+        made = materials.masonry(**{**values, **others})
         if row.dry:
             self._sawn(made.joints)
         return made

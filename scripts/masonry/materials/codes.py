@@ -110,10 +110,10 @@ def en1996(
     """Masonry of EN 1996-1-1:2005, with the values that the standard recommends; a national annex
     can have others.
 
-    E, G, fc, fv0 and friction. The factor 0.8 on K of a wall with a mortar joint along it,
-    3.6.1.2(6), is not applied. The standard has no direct tensile strength of bed joints: give
-    ``ft`` or ``bond_wrench``. Characteristic values give a characteristic answer and not the most
-    likely one.
+    E = 1000 fk, G = 0.4 E (3.7.2, 3.7.3), fc, fv0 and friction. The factor 0.8 on K of a wall with
+    a mortar joint along it, 3.6.1.2(6), is not applied. The standard has no direct tensile strength
+    of bed joints: give ``ft`` or ``bond_wrench``. Characteristic values give a characteristic
+    answer and not the most likely one.
 
     :param unit: what the bricks are of
     :param fb: their normalised mean compressive strength [Pa]

@@ -35,6 +35,10 @@ MODES = (
 MODEL_CODE = 12e6, 80e6
 BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 
+#: Strain at the compressive strength beyond which a modulus is questioned [-]. With 2 fc/E it is
+#: 0.0024 by EN 1996-1-1, 3.7.2, and 0.003 to 0.005 in table C8.5.I of Circolare 7/2019.
+MAX_PEAK_STRAIN = 0.01
+
 #: What a clause of a code says of the bed joint, by the argument of :func:`masonry`.
 OF_CLAUSES = dict(
     E="normalStiffness",
@@ -178,7 +182,7 @@ class DataSheet:
     :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van
         der Pluijm (1999)
     :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu
-        = unit_E/(2 (1 + nu)). Default: ks = kn/(2 (1 + nu))
+        = unit_E/(2 (1 + nu)). Default: ks = kn/(2 (1 + nu)), so that G = E/(2 (1 + nu))
     :param head_E: Young's modulus along the courses [Pa]. Default: head joints are of the same
         mortar and as thick as bed joints, and have their stiffness
     :param poisson: nu of the bricks [-]; default 0.2, usual for masonry units
@@ -210,6 +214,8 @@ class DataSheet:
 
     Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), and the
     law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
+
+    Masonry whose peak strain is above 0.01 is a warning: its modulus is probably too small.
 
     An assumed energy in tension or shear is at least 1.1 :func:`leastEnergy`, so that softening
     does not snap back between rigid units; a given one below leastEnergy is a warning. Joints to
@@ -359,7 +365,8 @@ def _stiffnesses(v, bed, head):
     """Stiffness of bed and head joints: bricks and joints in series."""
     kn = bed.values["normalStiffness"] = 1 / (v.height * (1 / v.E - 1 / v.unit_E))
     own = v.G and 1 / (v.height * (1 / v.G - v.shearing / v.unit_E))
-    why = f"kn/(2 (1 + nu)), nu = {v.nu:g}"
+    G = v.E / v.shearing
+    why = f"kn/(2 (1 + nu)), nu = {v.nu:g}: masonry has G = {G:.4g} Pa, {G / v.E:.2g} E"
     ks = bed.take("shearStiffness", own, kn / v.shearing, why)
     own = v.head_E and 1 / (v.length * (1 / v.head_E - 1 / v.unit_E))
     same = "like the bed joint: the same mortar, as thick"
@@ -402,6 +409,16 @@ def _crushing(v, bed, head):
             f"warning: materials.masonry: fc {fc / 1e6:g} MPa is outside of 12 to 80 MPa, the"
             f" range of Model Code 90 for the compressive fracture energy: Gc is {energy:.4g} J/m²,"
             f" {source}"
+        )
+    shortened = v.peak_strain or 2 * fc / v.E
+    if shortened > MAX_PEAK_STRAIN:
+        strain = "peak_strain" if v.peak_strain else "2 fc/E"
+        say(
+            f"warning: materials.masonry: with E {v.E:.4g} Pa and fc {fc:.4g} Pa masonry shortens by"
+            f" {100 * shortened:.2g} % ({strain}) before it crushes, more than"
+            f" {100 * MAX_PEAK_STRAIN:g} %: walls then lean and crush early. 2 fc/E is 0.24 % with"
+            " E = 1000 fk of EN 1996-1-1, 3.7.2, and 0.3 to 0.5 % in table C8.5.I of Circolare"
+            " 7/2019: is E of the masonry, and in Pa?"
         )
     bed.take("compressiveStrength", v.fc, fc, f"{MEAN:g} fk, EN 1052-1")
     head.take("compressiveStrength", None, fc, "like the bed joint")

@@ -13,6 +13,8 @@ from . import loops
 #: mortar dissipates nothing before the first crack; dry joints slip a little from the first row on.
 CRACKED = 1e-5
 SUDDEN = 0.1  # stretch of the push for :func:`suddenLoss` [mm]
+#: Of a measured force, before a wall carries more than its vertical load can give [-].
+TOLERANCE = 0.02
 SHEAR = 2 / 3  # weight of the base of a bar in shear for :func:`quasiStatic` [-]
 
 
@@ -108,6 +110,16 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
         if pulse == 0 or displacement[last] - down > pulse:
             return float(place)
     return None
+
+
+def rocking(normal: float, length: float, arm: float) -> float:
+    """The largest shear force of a wall without tension, N L/(2 H0), in the unit of N.
+
+    :param normal: vertical force N on its base
+    :param length: L [m]
+    :param arm: height H0 of zero moment above the base [m]
+    """
+    return normal * length / (2 * arm)
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:
