@@ -100,8 +100,8 @@ _NAMES = {
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
 _WITHOUT_YADE = """
-    arguments background bricks errors fields folders host materials memory moved notebook numbers
-    packages terminal units wings
+    arguments background bricks earth errors fields folders host materials memory moved notebook
+    numbers packages terminal units wings
 """.split()
 
 
