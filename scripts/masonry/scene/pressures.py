@@ -118,7 +118,7 @@ def atPlace(value, place, kind, name):
 def placesBelow(description, points):
     """Where loads stand that are let down from some points: of each the numbers of the bricks that
     have it on their highest face that looks up, and share it where it is on a joint, and the point
-    there [m]. Raises ValueError if there is none."""
+    there [m]; no bricks where there is none."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:
@@ -130,9 +130,7 @@ def placesBelow(description, points):
             inward = np.cross(sides, (x, y, high) - corners) @ normal
             if high <= z + near and min(inward) >= -near * np.abs(sides).max():
                 below[face.block] = max(float(high), below.get(face.block, -math.inf))
-        if not below:
-            raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")
-        high = max(below.values())
+        high = max(below.values(), default=float(z))
         bricks = [brick for brick, level in below.items() if level >= high - near]
         found.append((bricks, (float(x), float(y), high)))
     return found

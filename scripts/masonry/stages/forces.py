@@ -381,4 +381,4 @@ def prepare(scene, word, arguments):
             get("friction", 0.0),
         )
     elif word == "travel":
-        placed(scene, arguments["along"])
+        placed(scene, arguments["along"], get("axles", [(0.0, 1.0)]), get("spread", 0.0))
