@@ -12,19 +12,22 @@ import itertools
 from dataclasses import dataclass
 from typing import Annotated, Any, Callable, Iterator
 
+import numpy as np
 from yade import O, Vector3
 
 from .._masonry import resultant
 from ..arguments import Direction, Name, shown, validated
+from ..arguments import vector as point
 from ..arguments import name as nameOf
 from ..model.bodies import vector
 from ..numbers.columns import Column
 from ..errors import Refused
-from .platens import Coordinate
+from .platens import Coordinate, brickTarget
 from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .ties import GROUND
 from .script import describes
 
+Corner = Annotated[Any, point("m", 1e6)]
 BASE = "base"  # name of the section that every run on a platen records
 ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
 LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not lie above it
@@ -39,6 +42,7 @@ class Section:
     part: str  # of the bricks; None: all
     middle: tuple  # point in space about which moments are [m]
     isBase: bool = False  # recorded without a command
+    members: Any = None  # indices of the bricks whose joints count alone; None: those of its part
     interactions: tuple | list = ()  # YADE's, of its joints, when the scene is built
     _read: tuple = (None, None)  # the last reading, and its forces
 
@@ -51,7 +55,11 @@ class Section:
         #: whether every body is above it, by its id; the ground is not
         self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}
         self._structure = structure
-        self._parts = dict(zip(structure.ids, (b.part for b in description.bricks)))
+        own = (
+            b.part if self.members is None else n in self.members
+            for n, b in enumerate(description.bricks)
+        )
+        self._parts = dict(zip(structure.ids, own))
         pairs = [(one, (one.id1, one.id2)) for one in structure.interactions]
         crossing = [(one, ids) for one, ids in pairs if self._cross(*ids)]
         self.interactions = [one for one, _ in crossing]
@@ -77,7 +85,8 @@ class Section:
             return False
         lower, upper = (one, other) if self.above[other] else (other, one)
         # a joint to a platen is of the part of its brick
-        return self.part in (None, self._parts.get(upper, self._parts.get(lower)))
+        wanted = self.part if self.members is None else True
+        return wanted in (None, self._parts.get(upper, self._parts.get(lower)))
 
     def forces(self) -> tuple[Any, Any]:
         """Force [N] and moment about the middle [N m] of what is above on what is below: two
@@ -223,6 +232,43 @@ def section(
     found = Section(name, float(z), part, _middleAt(description, z, part, name))
     description.sections.append(found)
     return found
+
+
+@describes
+@validated
+def pier(description: Any, low: Corner, high: Corner, name: Name | None = None) -> None:
+    """Record normal force, shear force and moment of a pier at its mid-height, as :meth:`section`
+    does, and its drift, for checks by codes (:mod:`masonry_capacity.piers`).
+
+    :param low: lowest corner (x, y, z) of the box around the pier [m], in which the bricks have
+        their centroids; its longer horizontal side is the length of the pier
+    :param high: its highest corner [m]
+    :param name: of the columns; None: ``pier`` and a number
+    """
+    name = f"pier{len(description.piers)}" if name is None else name
+    middles = np.array([np.mean(b.corners, axis=0) for b in description.bricks])
+    middle, size = np.add(low, high) / 2, np.subtract(high, low)
+    inside = np.all((middles > low) & (middles < high), axis=1)
+    members = [int(n) for n in np.nonzero(inside)[0]]
+    # bricks of the lowest and the highest course, the nearest to the axis of the pier first
+    members.sort(key=lambda n: float(np.abs(middles[n] - middle)[:2].sum()))
+    level = lambda n: round(float(middles[n][2]), 6)
+    ends = [choose(members, key=level, default=0) for choose in (min, max)]
+    if not members or level(ends[0]) == level(ends[1]):
+        raise ValueError(f"pier {name}: its box must have two courses of bricks at least")
+    foot, head = (
+        brickTarget(description, n, f"{name}_{end}", fixed=False, loaded=False)
+        for n, end in zip(ends, ("foot", "head"))
+    )
+    description.drifts.append(Drift(f"{name}_drift", foot, head))
+    at, own = tuple(middle.tolist()), frozenset(members)
+    description.sections.append(Section(name, at[2], None, at, members=own))
+    along, about = ("x", "y") if size[0] >= size[1] else ("y", "x")
+    columns = {"N": "N_kN", "V": f"V_{along}_kN", "M": f"M_{about}_kNm"}
+    columns["drift"] = f"drift_{along}_mrad"
+    long, deep, tall = (float(side) for side in (max(size[:2]), min(size[:2]), size[2]))
+    entry = {"name": name, "length_m": long, "thickness_m": deep, "height_m": tall}
+    description.piers.append({**entry, **{n: f"{name}_{head}" for n, head in columns.items()}})
 
 
 def _middleAt(description, z, part, name):
