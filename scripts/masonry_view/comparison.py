@@ -12,12 +12,37 @@ from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.numbers import drawing
 from masonry.numbers.files import program, readCurve, readRun
+from masonry.numbers.run_data import BASE, MASONRY, MOVED, RunData
 from masonry.texts import TextFile
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
 #: 2008), and dashes.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
 DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
+
+#: Columns that are made of those of a run, with their labels.
+RATIOS = {
+    "drift_percent": "drift [%]",
+    "displacement_over_height": "displacement over height [-]",
+    "force_over_weight": "force over weight [-]",
+}
+NORMAL = "base_N_kN"
+
+
+def ratio(name: str, data: RunData, directory: FilePath) -> np.ndarray:
+    """A column of ``RATIOS``: the displacement of the masonry at what is pushed over its height
+    (``drift_height_m``, else ``recorded_height_m``), or the base shear over the vertical force at
+    the base when the push begins. Raises Refused."""
+    if name == "force_over_weight":
+        force, normal = data.column(BASE), data.column(NORMAL)
+        weight = -normal[data.rows[0] if data.isPush else 0] if normal is not None else 0.0
+        if force is None or not weight > 0:
+            raise Refused(f"{directory}: {name} needs {BASE} and a compression {NORMAL}")
+        return np.array(force) / weight
+    moved = next((v for v in map(data.column, (MASONRY, MOVED)) if v is not None), None)
+    if moved is None or not data.height:
+        raise Refused(f"{directory}: {name} needs {MOVED} and a drift_height_m in run.json")
+    return np.array(moved) / data.height * (0.1 if name == "drift_percent" else 1e-3)
 
 
 def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -67,7 +92,8 @@ def readRuns(
     """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
 
     :param directories: folders of runs
-    :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
+    :param x: column of curve.csv, or one of ``RATIOS``; None: that of the entry ``figure`` in
+        run.json of the first run
     :param y: as ``x``; None: the first one of this entry
     :raises Refused: if a column is not there, or if none is named
     """
@@ -82,6 +108,8 @@ def readRuns(
             x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
             labels = [_label(name, spec) for name in (x, y)]
         for name in (x, y):
+            if name in RATIOS:
+                data[name] = [*ratio(name, RunData(readRun(directory), data.get), directory)]
             if name not in data:
                 raise Refused(
                     f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}"
@@ -92,6 +120,8 @@ def readRuns(
 
 def _label(column, spec):
     """Label of an axis: that of curve.png if it has the column, else what the column is called."""
+    if column in RATIOS:
+        return RATIOS[column]
     if spec and spec["x"]["column"] == column:
         return spec["x"]["label"]
     if spec and spec["y"][0]["column"] == column and spec.get("y_label"):
@@ -190,10 +220,9 @@ def main(words: Sequence[str] | None = None) -> None:
         help="a measured curve: a file and the names of its two columns, or their numbers from 1;"
         " may be repeated",
     )
-    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")
-    parser.add_argument(
-        "--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png"
-    )
+    ratios = f"column of curve.csv, or {', '.join(RATIOS)}"
+    parser.add_argument("--x", metavar="COLUMN", help=f"{ratios}; else that of curve.png")
+    parser.add_argument("--y", metavar="COLUMN", help="as --x; else the first one of curve.png")
     parser.add_argument(
         "--label",
         action="append",

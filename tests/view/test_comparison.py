@@ -43,6 +43,30 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
     assert axes.get_ylim()[0] < -5
 
 
+def test_curves_have_the_axes_of_engineers(tmp_path, drawn):
+    """3 and 6 mm over 2 m are 0.15 and 0.3 %; 10 kN over 40 kN, which are there when the push
+    begins, are 0.25."""
+    heads = ["displacement_mm", "base_shear_kN", "base_N_kN", "time_s"]
+    push = {"stage": "push", "first_row": 1, "load": ["push", "top along x", ""]}
+    rows = [(0, 0, -1, 0), (0, 0, -40, 1), (3, 10, -41, 2), (6, 8, -42, 3)]
+    entries = dict(stages=[{"stage": "settle", "first_row": 0}, push], figure=FIGURE)
+    folder = writeRun(tmp_path / "run", heads, rows, drift_height_m=2.0, **entries)
+    for x, label, values in (
+        ("drift_percent", "drift [%]", [0, 0, 0.15, 0.3]),
+        ("displacement_over_height", "displacement over height [-]", [0, 0, 1.5e-3, 3e-3]),
+    ):
+        out = str(tmp_path / "p.png")
+        comparison.main([folder, "--x", x, "--y", "force_over_weight", "--out", out])
+        axes = drawn.pop().axes[0]
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (label, "force over weight [-]")
+        assert axes.lines[0].get_xdata() == approx(values)
+        assert axes.lines[0].get_ydata() == approx([0, 0, 0.25, 0.2])
+    folder = writeRun(tmp_path / "other", heads[:2], [(0, 0), (1, 2)], figure=FIGURE)
+    for name, message in (("drift_percent", "drift_height_m"), ("force_over_weight", "base_N_kN")):
+        with raises(Refused, match=message):
+            comparison.compare([folder], x=name, y=name)
+
+
 @mark.parametrize(
     "text, x, y",
     [
