@@ -2,6 +2,7 @@
 """Curves of several runs and of measured CSV files over each other, in one picture."""
 
 import argparse
+import csv
 import os
 from typing import Any, Sequence
 
@@ -10,7 +11,7 @@ import numpy as np
 from masonry.arguments import FilePath
 from masonry.errors import Refused
 from masonry.terminal import say
-from masonry.numbers import drawing
+from masonry.numbers import drawing, quantities
 from masonry.numbers.files import program, readCurve, readRun
 from masonry.numbers.run_data import BASE, MASONRY, MOVED, RunData
 from masonry.texts import TextFile
@@ -171,6 +172,47 @@ def compare(
     return out
 
 
+def differences(directories: Sequence[FilePath]) -> list[list[Any]]:
+    """The numbers of runs beside each other, as of a structure before and after it is strengthened:
+    rows of a name, a unit, the value of each run, and the change of each but the first over the
+    first [%]; None where a run has none. They are those of the terminal, and the answers of
+    stages.
+
+    :param directories: folders of runs
+    """
+    groups, runs = [name for name in quantities.GROUPS if name != "cost"], []
+    for directory in directories:
+        data = RunData.read(directory)
+        shown = quantities.shown(quantities.known(data), *groups, brief=True)
+        found = {(one.name, one.unit): one.value for one in shown}
+        for one in data.run.get("answers") or []:
+            name = f"{one['stage']}: {one['name'].replace('_', ' ')}"
+            found[name, one["unit"]] = one["value"]
+        runs.append(found)
+    rows: list[list[Any]] = []
+    for key in dict.fromkeys(key for found in runs for key in found):
+        first, *others = values = [found.get(key) for found in runs]
+        changes = [100 * (v / first - 1) if first and v is not None else None for v in others]
+        rows.append([*key, *values, *changes])
+    return rows
+
+
+def writeTable(path: FilePath, directories: Sequence[FilePath], names: Sequence[str]) -> None:
+    """Print :func:`differences` and write them as CSV. Raises Refused."""
+    heads = ["number", "unit", *names, *(f"{name} change %" for name in names[1:])]
+    rows = differences(directories)
+    text = lambda value: "" if value is None else f"{value:.4g}"
+    lines = [[*row[:2], *map(text, row[2:])] for row in rows]
+    widths = [max(map(len, column)) for column in zip(heads, *lines)]
+    for name, *cells in [heads, *lines]:
+        say("  ".join([name.ljust(widths[0]), *map(str.rjust, cells, widths[1:])]))
+    try:
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([heads, *lines])
+    except OSError as error:
+        raise Refused(f"cannot write {path}: {error.strerror}") from None
+
+
 def _draw(out, tests, curves, names, labels, title):
     with drawing.picture(out, 7, 4.6, 150) as figure:
         axes = figure.subplots()
@@ -232,7 +274,18 @@ def main(words: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--title", default="", help="of the picture")
     parser.add_argument(
+        "--table",
+        metavar="FILE",
+        help="also print the numbers of all folders, with their changes over the first one, and"
+        " write them to this CSV file",
+    )
+    parser.add_argument(
         "--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)"
     )
     args = parser.parse_args(words)
     say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))
+    if args.table:
+        if len(args.result) < 2:
+            raise Refused("--table: name two folders of results at least")
+        names = [*args.label, *_names(args.result, [])[len(args.label) :]][: len(args.result)]
+        writeTable(args.table, args.result, names)

@@ -67,6 +67,35 @@ def test_curves_have_the_axes_of_engineers(tmp_path, drawn):
             comparison.compare([folder], x=name, y=name)
 
 
+def test_two_runs_stand_in_one_table_with_their_changes(tmp_path, drawn, capsys):
+    """The peak grows from 10 to 15 kN, by 50 %, and a tie that only the second run has, has no
+    change."""
+    heads = ["displacement_mm", "base_shear_kN", "top_shear_kN", "time_s"]
+    push = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
+    said = lambda name, value: {"stage": "grow", "name": name, "unit": "kN", "value": value}
+    folders = []
+    for name, force, answers in (
+        ("before", 10, [said("factor_held", 4.0)]),
+        ("after", 15, [said("factor_held", 5.0), said("tie_force", 2.0)]),
+    ):
+        rows = [(0, 0, 0, 0), (1, force, force, 1), (2, 5, 5, 2)]
+        entries = dict(stages=[push], figure=FIGURE, answers=answers)
+        entries["peak_base_shear_kN"] = force
+        folders.append(writeRun(tmp_path / name, heads, rows, **entries))
+    table, out = tmp_path / "t.csv", str(tmp_path / "p.png")
+    axes = ["--x", heads[0], "--y", heads[1]]
+    assert comparison.main([*folders, *axes, "--out", out, "--table", str(table)]) == 0
+    with open(table, newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["number", "unit", "before", "after", "after change %"]
+    found = {row[0]: row[1:] for row in rows}
+    assert found["grow: factor held"] == ["kN", "4", "5", "25"]
+    assert found["grow: tie force"] == ["kN", "", "2", ""]
+    assert ["kN", "10", "15", "50"] in found.values()
+    assert "grow: factor held" in capsys.readouterr().out
+    assert comparison.main([folders[0], *axes, "--out", out, "--table", str(table)]) == 2
+
+
 @mark.parametrize(
     "text, x, y",
     [
