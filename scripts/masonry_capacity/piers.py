@@ -4,7 +4,7 @@ them.
 
     /usr/bin/python3 -m masonry_capacity.piers results/WALL --fb 20  # [MPa]; writes piers.csv
 
-``scene.pier(...)`` says what the piers are. Strengths are those of the bed joints of the run if
+``scene.pier()`` says what the piers are. Strengths are those of the bed joints of the run if
 they are not given: means without safety factors, with a confidence factor of 1. Clauses are cited
 from memory.
 """
@@ -227,7 +227,7 @@ def check(
     data = RunData.read(directory)
     run, rows = data.run, []
     if not run.get("piers"):
-        raise Refused(f"{directory}: its scene names no piers: scene.pier(low, high) does")
+        raise Refused(f"{directory}: its scene names no piers: scene.pier() does")
     bed = run["joints"].get("bed", {})
     if fm is None and not bed.get("cap", True):
         raise Refused(f"{directory}: its bed joints do not crush: give fm [MPa]")

@@ -16,7 +16,7 @@ import numpy as np
 from yade import O, Vector3
 
 from .._masonry import resultant
-from ..arguments import Direction, Name, shown, validated
+from ..arguments import Direction, Name, orNone, shown, validated
 from ..arguments import vector as point
 from ..arguments import name as nameOf
 from ..model.bodies import vector
@@ -27,7 +27,7 @@ from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .ties import GROUND
 from .script import describes
 
-Corner = Annotated[Any, point("m", 1e6)]
+Corner = Annotated[Any, orNone(point("m", 1e6))]
 BASE = "base"  # name of the section that every run on a platen records
 ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
 LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not lie above it
@@ -236,18 +236,69 @@ def section(
 
 @describes
 @validated
-def pier(description: Any, low: Corner, high: Corner, name: Name | None = None) -> None:
+def pier(
+    description: Any,
+    low: Corner = None,
+    high: Corner = None,
+    name: Name | None = None,
+    part: Part | None = None,
+) -> None:
     """Record normal force, shear force and moment of a pier at its mid-height, as :meth:`section`
     does, and its drift, for checks by codes (:mod:`masonry_capacity.piers`).
+
+    Without a box all piers of a wall are recorded, or the wall as one: what stands beside openings
+    in courses that have more of them than the courses above and below.
 
     :param low: lowest corner (x, y, z) of the box around the pier [m], in which the bricks have
         their centroids; its longer horizontal side is the length of the pier
     :param high: its highest corner [m]
-    :param name: of the columns; None: ``pier`` and a number
+    :param name: of the columns, and of several their beginning; None: ``pier`` and a number
+    :param part: of the bricks, of which the piers are without a box; None: all
     """
-    name = f"pier{len(description.piers)}" if name is None else name
+    boxes = [(low, high)]
+    if (low is None) != (high is None):
+        raise ValueError("pier: give both corners of its box, or none")
+    if low is None:
+        boxes = [*_besideOpenings(description, part)]
+        if not boxes:
+            raise ValueError("pier: openings overlap so that none is found: give low and high")
+    for one, other in boxes:
+        own = name if name and len(boxes) == 1 else f"{name or 'pier'}{len(description.piers)}"
+        _addPier(description, np.array(one), np.array(other), own)
+
+
+def _besideOpenings(description, part):
+    """Lowest and highest corners of the piers of a wall [m]."""
+    corners = [np.array(b.corners) for b in description.bricks if part in (None, b.part)]
+    boxes = np.array([[c.min(axis=0), c.max(axis=0)] for c in corners]).round(6)
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    along = int(high[1] - low[1] > high[0] - low[0])
+    levels, found = np.unique(boxes[:, :, 2]), []
+    for bottom, top in zip(levels, levels[1:]):
+        here = boxes[(boxes[:, 0, 2] < top) & (boxes[:, 1, 2] > bottom)][:, :, along]
+        spans: list[list[float]] = []
+        for start, end in sorted(here.tolist()):
+            if spans and start <= spans[-1][1] + 1e-5:
+                spans[-1][1] = max(spans[-1][1], end)
+            else:
+                spans.append([start, end])
+        if found and found[-1][0] == spans:
+            found[-1][2] = top
+        else:
+            found.append([spans, bottom, top])
+    counts = [0, *(len(spans) for spans, *_ in found), 0]
+    for n, (spans, bottom, top) in enumerate(found, 1):
+        if counts[n] > max(counts[n - 1], counts[n + 1]):
+            for start, end in spans:
+                first, last = np.append(low[:2], bottom), np.append(high[:2], top)
+                first[along], last[along] = start, end
+                yield first, last
+
+
+def _addPier(description, low, high, name):
+    """Take a pier, the bricks in a box. Raises ValueError."""
     middles = np.array([np.mean(b.corners, axis=0) for b in description.bricks])
-    middle, size = np.add(low, high) / 2, np.subtract(high, low)
+    middle, size = (low + high) / 2, high - low
     inside = np.all((middles > low) & (middles < high), axis=1)
     members = [int(n) for n in np.nonzero(inside)[0]]
     # bricks of the lowest and the highest course, the nearest to the axis of the pier first
