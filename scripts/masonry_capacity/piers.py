@@ -16,7 +16,7 @@ import math
 import os
 import sys
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Sequence
 
 import numpy as np
 
@@ -277,7 +277,7 @@ def check(
 
 
 @program
-def main(words=None):
+def main(words: Sequence[str] | None = None) -> None:
     """The program. Returns its exit status."""
     p = argparse.ArgumentParser(prog="python3 -m masonry_capacity.piers", description=check.__doc__)
     p.add_argument("result", metavar="FOLDER", help="folder of results")

@@ -13,7 +13,7 @@ ROOMS += ["masonry_capacity", "masonry_view"]
 #: Packages of the ground floor, beside the rooms.
 GROUND = (
     "arguments auxiliary background errors folders host memory moved notebook packages terminal"
-    " units"
+    " texts units"
 ).split()
 
 

@@ -231,7 +231,9 @@ def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target
     return brickTarget(description, where, name, fixed=False, loaded=True)
 
 
-def brickTarget(description, where, name, fixed, loaded):
+def brickTarget(
+    description: Any, where: Any, name: str | None, fixed: bool, loaded: bool
+) -> Target:
     index, point = description.find(where)
     point = point or description.middle(index)
     return description.add(
