@@ -15,6 +15,7 @@ A scene of one's own is bricks, materials and stages::
 ``help()`` of its rooms names their modules:
 
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
+- :mod:`masonry.earth`: pressure of soil on a face
 - :mod:`masonry.materials`: masonry of one's own, published parameter sets, random fields
 - :mod:`masonry.scene`: ``Scene``, its platens, loads, records, options; :mod:`masonry.stages`: the
   stages of a test
@@ -99,8 +100,8 @@ _NAMES = {
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
 _WITHOUT_YADE = """
-    arguments background bricks errors fields folders host materials memory moved notebook numbers
-    packages terminal texts units wings
+    arguments background bricks earth errors fields folders host materials memory moved notebook
+    numbers packages terminal texts units wings
 """.split()
 
 

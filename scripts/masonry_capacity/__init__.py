@@ -23,6 +23,7 @@ and in Python, also where there is no YADE::
 - :mod:`masonry_capacity.spectra`: elastic spectra of EN 1998-1:2004, and from files
 - :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method
 - :mod:`masonry_capacity.domains`: the N-V domain of a pier, with runs as points
+- :mod:`masonry_capacity.piers`: piers of a run by EN 1998-3:2005 and NTC 2018
 - :mod:`masonry_capacity.report`: the files of all that, which :mod:`masonry_capacity.figure` draws
 
 **What the equivalent system is.** The structure is one mass on a spring: it moves in one shape,

@@ -2,6 +2,7 @@
 """Curves of several runs and of measured CSV files over each other, in one picture."""
 
 import argparse
+import csv
 import os
 from typing import Any, Sequence
 
@@ -10,8 +11,9 @@ import numpy as np
 from masonry.arguments import FilePath
 from masonry.errors import Refused
 from masonry.terminal import say
-from masonry.numbers import curves, drawing
+from masonry.numbers import curves, drawing, quantities
 from masonry.numbers.files import program, readCurve, readRun
+from masonry.numbers.run_data import BASE, MASONRY, MOVED, RunData
 from masonry.texts import TextFile
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
@@ -21,6 +23,29 @@ DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
 #: Columns of shear forces, and those of the base that the check of a test reads.
 SHEARS = "base_shear_kN", "top_shear_kN", "base_V_x_kN"
 N, V, M = "base_N_kN", "base_V_x_kN", "base_M_y_kNm"
+
+#: Columns that are made of those of a run, with their labels.
+RATIOS = {
+    "drift_percent": "drift [%]",
+    "displacement_over_height": "displacement over height [-]",
+    "force_over_weight": "force over weight [-]",
+}
+
+
+def ratio(name: str, data: RunData, directory: FilePath) -> np.ndarray:
+    """A column of ``RATIOS``: the displacement of the masonry at what is pushed over its height
+    (``drift_height_m``, else ``recorded_height_m``), or the base shear over the vertical force at
+    the base when the push begins. Raises Refused."""
+    if name == "force_over_weight":
+        force, normal = data.column(BASE), data.column(N)
+        weight = -normal[data.rows[0] if data.isPush else 0] if normal is not None else 0.0
+        if force is None or not weight > 0:
+            raise Refused(f"{directory}: {name} needs {BASE} and a compression {N}")
+        return np.array(force) / weight
+    moved = next((v for v in map(data.column, (MASONRY, MOVED)) if v is not None), None)
+    if moved is None or not data.height:
+        raise Refused(f"{directory}: {name} needs {MOVED} and a drift_height_m in run.json")
+    return np.array(moved) / data.height * (0.1 if name == "drift_percent" else 1e-3)
 
 
 def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -70,7 +95,9 @@ def readRuns(
     """Curves of runs: a list of (x, y) arrays, and the labels of both axes. Raises Refused if a
     column is not there, or if none is named.
 
-    :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
+    :param directories: folders of runs
+    :param x: column of curve.csv, or one of ``RATIOS``; None: that of the entry ``figure`` in
+        run.json of the first run
     :param y: as ``x``; None: the first one of this entry
     """
     pairs, labels = [], None
@@ -84,6 +111,8 @@ def readRuns(
             x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
             labels = [_label(name, spec) for name in (x, y)]
         for name in (x, y):
+            if name in RATIOS:
+                data[name] = [*ratio(name, RunData(readRun(directory), data.get), directory)]
             if name not in data:
                 raise Refused(
                     f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}"
@@ -94,6 +123,8 @@ def readRuns(
 
 def _label(column, spec):
     """Label of an axis: that of curve.png if it has the column, else what the column is called."""
+    if column in RATIOS:
+        return RATIOS[column]
     if spec and spec["x"]["column"] == column:
         return spec["x"]["label"]
     if spec and spec["y"][0]["column"] == column and spec.get("y_label"):
@@ -141,6 +172,47 @@ def compare(
     except OSError as error:
         raise Refused(f"cannot write {out}: {error.strerror}") from None
     return out
+
+
+def differences(directories: Sequence[FilePath]) -> list[list[Any]]:
+    """The numbers of runs beside each other, as of a structure before and after it is strengthened:
+    rows of a name, a unit, the value of each run, and the change of each but the first over the
+    first [%]; None where a run has none. They are those of the terminal, and the answers of
+    stages.
+
+    :param directories: folders of runs
+    """
+    groups, runs = [name for name in quantities.GROUPS if name != "cost"], []
+    for directory in directories:
+        data = RunData.read(directory)
+        shown = quantities.shown(quantities.known(data), *groups, brief=True)
+        found = {(one.name, one.unit): one.value for one in shown}
+        for one in data.run.get("answers") or []:
+            name = f"{one['stage']}: {one['name'].replace('_', ' ')}"
+            found[name, one["unit"]] = one["value"]
+        runs.append(found)
+    rows: list[list[Any]] = []
+    for key in dict.fromkeys(key for found in runs for key in found):
+        first, *others = values = [found.get(key) for found in runs]
+        changes = [100 * (v / first - 1) if first and v is not None else None for v in others]
+        rows.append([*key, *values, *changes])
+    return rows
+
+
+def writeTable(path: FilePath, directories: Sequence[FilePath], names: Sequence[str]) -> None:
+    """Print :func:`differences` and write them as CSV. Raises Refused."""
+    heads = ["number", "unit", *names, *(f"{name} change %" for name in names[1:])]
+    rows = differences(directories)
+    text = lambda value: "" if value is None else f"{value:.4g}"
+    lines = [[*row[:2], *map(text, row[2:])] for row in rows]
+    widths = [max(map(len, column)) for column in zip(heads, *lines)]
+    for name, *cells in [heads, *lines]:
+        say("  ".join([name.ljust(widths[0]), *map(str.rjust, cells, widths[1:])]))
+    try:
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([heads, *lines])
+    except OSError as error:
+        raise Refused(f"cannot write {path}: {error.strerror}") from None
 
 
 def _warnOfRocking(directory, text, peak, y=None):
@@ -216,10 +288,9 @@ def main(words: Sequence[str] | None = None) -> None:
         help="a measured curve: a file and the names of its two columns, or their numbers from 1;"
         " may be repeated",
     )
-    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")
-    parser.add_argument(
-        "--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png"
-    )
+    ratios = f"column of curve.csv, or {', '.join(RATIOS)}"
+    parser.add_argument("--x", metavar="COLUMN", help=f"{ratios}; else that of curve.png")
+    parser.add_argument("--y", metavar="COLUMN", help="as --x; else the first one of curve.png")
     parser.add_argument(
         "--label",
         action="append",
@@ -229,7 +300,18 @@ def main(words: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--title", default="", help="of the picture")
     parser.add_argument(
+        "--table",
+        metavar="FILE",
+        help="also print the numbers of all folders, with their changes over the first one, and"
+        " write them to this CSV file",
+    )
+    parser.add_argument(
         "--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)"
     )
     args = parser.parse_args(words)
     say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))
+    if args.table:
+        if len(args.result) < 2:
+            raise Refused("--table: name two folders of results at least")
+        names = [*args.label, *_names(args.result, [])[len(args.label) :]][: len(args.result)]
+        writeTable(args.table, args.result, names)

@@ -25,7 +25,7 @@ PUBLIC = """
     masonry.scene.loads
     masonry.scene.platens masonry.scene.records masonry.scene.scene masonry.scene.targets
     masonry_capacity.bilinear_curve masonry_capacity.domains masonry_capacity.figure
-    masonry_capacity.n2 masonry_capacity.report masonry_capacity.spectra
+    masonry_capacity.n2 masonry_capacity.piers masonry_capacity.report masonry_capacity.spectra
     masonry_limit.assembly masonry_limit.bound masonry_limit.reading
     masonry_study.calibrate masonry_study.incremental masonry_study.plan masonry_study.spectrum
     masonry_study.variables

@@ -23,8 +23,8 @@ WINGS = {
 #: its own floor and those above it.
 FLOORS = [
     (
-        "arguments auxiliary background errors folders host memory moved notebook packages terminal"
-        " texts units wings"
+        "arguments auxiliary background earth errors folders host memory moved notebook packages"
+        " terminal texts units wings"
     ).split(),
     ["bricks"],
     ["numbers"],

@@ -120,6 +120,7 @@ class Of:
 
 TOP, LEVEL = Of("top"), (1, 0, 0)
 PUSHES = dict(target=TOP, rate=200.0, control=TOP)
+TRAIN = dict(axles=[(0.0, 1.0)], spread=0.0, longest=0.05)
 WINDS = dict(pressure=10.0, towards=LEVEL)
 GROWS = dict(over=0.02, within=0.5)
 
@@ -133,11 +134,12 @@ WORDS = {
     "press": (scene, dict(platen=TOP, stress=1e5)),
     "load": (scene, dict(target=TOP, force=(0, 0, -1e3))),
     "wind": (space, WINDS),
-    "pressure": (space, dict(value=10.0, towards=LEVEL)),
+    "pressure": (space, dict(value=10.0, towards=LEVEL, friction=5.0)),
     "drift": (scene, dict(lower=Of("base"), upper=TOP)),
     "column": (scene, dict(name="own_mm", meaning="mine", value=lambda: 1.0)),
     "joint": (scene, dict(one=0, two=1)),
     "section": (scene, dict(z=0.1)),
+    "pier": (scene, dict(low=(-9, -9, -9), high=(9, 9, 9))),
     "tie": (scene, dict(one=2, other=TOP, stiffness=1e6, strength=1e3)),
     "overlay": (space, dict(side=(0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1)),
     "ground": (lambda: scene(collapse="follow"), dict(level=-5.0)),
@@ -159,7 +161,7 @@ WORDS = {
     "shakeAgain": (settled, dict(records=[[0.0, 2.0, 0.0]], every=0.002, longest=0.05)),
     "run": (settled, dict(seconds=0.01)),
     "grow": (lambda: settled(space), dict(loads={}, most=2.0, dead=True, pressure=10.0, **GROWS)),
-    "travel": (lambda: settled(space), dict(force=100.0, along=[(0.1, 0.1, 1.0)], longest=0.05)),
+    "travel": (lambda: settled(space), dict(force=100.0, along=[(0.1, 0.1, 1.0)], **TRAIN)),
     "bracket": (settled, dict(carries=lambda f: f < 0.5, low=0.0, high=1.0, within=0.3)),
     "result": (settled, dict(name="mine", value=1.0, how="by hand")),
     "bound": (settled, dict(target=TOP)),

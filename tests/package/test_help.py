@@ -12,8 +12,8 @@ ROOMS = "masonry.model masonry.numbers masonry.run masonry.scene masonry.stages"
 ROOMS += ["masonry_capacity", "masonry_view"]
 #: Packages of the ground floor, beside the rooms.
 GROUND = (
-    "arguments auxiliary background errors folders host memory moved notebook packages terminal texts"
-    " units"
+    "arguments auxiliary background errors folders host memory moved notebook packages terminal"
+    " texts units"
 ).split()
 
 

@@ -4,6 +4,7 @@ hand."""
 
 from hosted import *
 from masonry.scene import pressures
+from masonry.stages import travelling
 
 WATER, DENSITY = 9810.0, 2400.0  # [N/m³], [kg/m³]
 STONE = materials.dry(friction=0.7, normalStiffness=1e11, density=DENSITY)
@@ -172,6 +173,11 @@ def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
     bounds = [b["factor"] for b in run["bounds"]]
     assert bounds == approx(bounds[::-1], rel=1e-3)
     assert answers["least_bound"] == min(bounds) < bounds[2]
+    table = np.genfromtxt(tmp_path / "travel.csv", delimiter=",", names=True)
+    assert table["bound_kN"] == approx(bounds, rel=1e-5)
+    assert min(table["displacement_mm"]) == approx(answers["largest_displacement"], rel=1e-5)
+    assert answers["largest_factor"] == approx(min(bounds) / 2)
+    assert min(table["factor"]) == approx(min(bounds) / 2, rel=1e-5)
 
 
 def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_path):
@@ -191,7 +197,7 @@ def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
         assert below((x, 0.1, 5)) == [([brick], (x, 0.1, approx(z)))]
     for point in ((0.9, 0.1, 5), (0.5, 0.1, 0.1)):
         with raises(ValueError, match="no face that looks up is below"):
-            below(point)
+            travelling.sharesOf(description, [point], [(0.0, 1.0)], 0.0)
 
 
 def test_pressures_that_are_no_numbers_and_loads_that_are_none_are_refused(tmp_path):
@@ -209,3 +215,43 @@ def test_pressures_that_are_no_numbers_and_loads_that_are_none_are_refused(tmp_p
     scene.settle()
     with raises(ValueError, match="must say what grows"):
         scene.grow({})
+
+
+# -- trains ----------------------------------------------------------------------------------------
+
+#: Largest loads of a bridge of 8 m [kN] by a linear programme of its own, of a single axle and of
+#: each of two with 1.5 m between them, by the place of the first [m].
+SINGLE = {1.2: 285.1, 1.6: 273.0, 2.0: 288.3, 2.4: 337.6, 2.8: 442.6}
+PAIR = {0.65: 205.9, 0.8: 227.7, 1.2: 260.3, 1.6: 360.1, 2.0: 671.0}
+
+
+@mark.parametrize("held, axles", [(SINGLE, [(0, 1)]), (PAIR, [(0, 1), (1.5, 1)])])
+def test_the_line_of_influence_of_a_bridge_is_that_of_its_linear_programme(tmp_path, held, axles):
+    bridge = bricks.Arch(0.6, 1.0, 25, span=8.0, angle=105, skewback=0.5)
+    stone = materials.dry(friction=0.6, normalStiffness=1e11, density=2200)
+    scene = lean(tmp_path, bridge, stone, "--preset", "bound")
+    for n in (25, 26):
+        scene.hold(n)
+    top = scene.description.high[2] + 0.4
+    scene.pressure(lambda x, y, z: 18e3 * (top - z), (0, 0, -1), "arch", False)
+    scene.settle()
+    scene.travel(1e5, [(x, 0.5, 9) for x in held], axles=axles)
+    scene.finish()
+    table = np.genfromtxt(tmp_path / "travel.csv", delimiter=",", names=True)
+    assert table["bound_kN"] == approx([*held.values()], rel=5e-3)
+    assert table["factor"] == approx(table["bound_kN"] / 100)
+
+
+def test_an_axle_on_fill_is_spread_over_the_bricks_below_it():
+    """1 : 2 through 0.8 m: over 0.4 m to both sides, of bricks that end 0.4 m to the left of the
+    first axle; of the second one, which is half as heavy, nothing stands on a brick."""
+    blocks = bricks.block((0, 0, 0), (0.4, 0.4, 0.2)) + bricks.block((0.4, 0, 0), (1.0, 0.4, 0.2))
+    description = described(blocks, False)
+    shares = lambda x: travelling.sharesOf(description, [(x, 0.2, 1.0)], [(0, 1.0), (9, 0.5)], 0.5)
+    (found,) = shares(0.4)
+    assert found == [
+        (0, (approx(0.2), 0.2, approx(0.2)), approx(0.5)),
+        (1, (approx(0.6), 0.2, approx(0.2)), approx(0.5)),
+    ]
+    (found,) = shares(0.8)  # from 0.4 to 1.2, of which a quarter is beside the bricks
+    assert found == [(1, (approx(0.7), 0.2, approx(0.2)), approx(0.75))]

@@ -51,7 +51,7 @@ top = scene.handle(2, name="stone")
 scene.pressure(lambda x, y, z: 500 * (0.6 - z), (1, 0, 0))
 scene.settle()
 scene.pressure(lambda x, y, z: 900 * z, (-1, 0, 0))
-scene.travel(500, [(0.1, 0.1, 1), (0.2, 0.1, 1)])
+scene.travel(500, [(0.1, 0.1, 1), (0.2, 0.1, 1)], axles=[(0, 1), (0.1, 0.5)], spread=0.1)
 scene.grow({top: (2000, 0, 0)}, dead=True, pressure=lambda x, y, z: 1e3 * z, most=3)
 scene.finish()
 """,

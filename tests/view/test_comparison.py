@@ -43,6 +43,59 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
     assert axes.get_ylim()[0] < -5
 
 
+def test_curves_have_the_axes_of_engineers(tmp_path, drawn):
+    """3 and 6 mm over 2 m are 0.15 and 0.3 %; 10 kN over 40 kN, which are there when the push
+    begins, are 0.25."""
+    heads = ["displacement_mm", "base_shear_kN", "base_N_kN", "time_s"]
+    push = {"stage": "push", "first_row": 1, "load": ["push", "top along x", ""]}
+    rows = [(0, 0, -1, 0), (0, 0, -40, 1), (3, 10, -41, 2), (6, 8, -42, 3)]
+    entries = dict(stages=[{"stage": "settle", "first_row": 0}, push], figure=FIGURE)
+    folder = writeRun(tmp_path / "run", heads, rows, drift_height_m=2.0, **entries)
+    for x, label, values in (
+        ("drift_percent", "drift [%]", [0, 0, 0.15, 0.3]),
+        ("displacement_over_height", "displacement over height [-]", [0, 0, 1.5e-3, 3e-3]),
+    ):
+        out = str(tmp_path / "p.png")
+        comparison.main([folder, "--x", x, "--y", "force_over_weight", "--out", out])
+        axes = drawn.pop().axes[0]
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (label, "force over weight [-]")
+        assert axes.lines[0].get_xdata() == approx(values)
+        assert axes.lines[0].get_ydata() == approx([0, 0, 0.25, 0.2])
+    folder = writeRun(tmp_path / "other", heads[:2], [(0, 0), (1, 2)], figure=FIGURE)
+    for name, message in (("drift_percent", "drift_height_m"), ("force_over_weight", "base_N_kN")):
+        with raises(Refused, match=message):
+            comparison.compare([folder], x=name, y=name)
+
+
+def test_two_runs_stand_in_one_table_with_their_changes(tmp_path, drawn, capsys):
+    """The peak grows from 10 to 15 kN, by 50 %, and a tie that only the second run has, has no
+    change."""
+    heads = ["displacement_mm", "base_shear_kN", "top_shear_kN", "time_s"]
+    push = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
+    said = lambda name, value: {"stage": "grow", "name": name, "unit": "kN", "value": value}
+    folders = []
+    for name, force, answers in (
+        ("before", 10, [said("factor_held", 4.0)]),
+        ("after", 15, [said("factor_held", 5.0), said("tie_force", 2.0)]),
+    ):
+        rows = [(0, 0, 0, 0), (1, force, force, 1), (2, 5, 5, 2)]
+        entries = dict(stages=[push], figure=FIGURE, answers=answers)
+        entries["peak_base_shear_kN"] = force
+        folders.append(writeRun(tmp_path / name, heads, rows, **entries))
+    table, out = tmp_path / "t.csv", str(tmp_path / "p.png")
+    axes = ["--x", heads[0], "--y", heads[1]]
+    assert comparison.main([*folders, *axes, "--out", out, "--table", str(table)]) == 0
+    with open(table, newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["number", "unit", "before", "after", "after change %"]
+    found = {row[0]: row[1:] for row in rows}
+    assert found["grow: factor held"] == ["kN", "4", "5", "25"]
+    assert found["grow: tie force"] == ["kN", "", "2", ""]
+    assert ["kN", "10", "15", "50"] in found.values()
+    assert "grow: factor held" in capsys.readouterr().out
+    assert comparison.main([folders[0], *axes, "--out", out, "--table", str(table)]) == 2
+
+
 @mark.parametrize(
     "text, x, y",
     [

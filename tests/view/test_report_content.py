@@ -288,6 +288,14 @@ def test_the_head_the_sentences_and_the_chart(pushed):
     assert set(CHART.split(";")) <= {text.strip() for text in pushed.of("text")}
 
 
+def test_piers_that_codes_have_checked_are_a_table(tmp_path):
+    where = folder(tmp_path)
+    (tmp_path / "piers.csv").write_text("pier,code,nu\r\nleft,NTC 2018,0.065\r\n")
+    found = page(where)
+    assert ["pier", "code", "nu"] in found.rows
+    assert found.row("left") == ["left", "NTC 2018", "0.065"]
+
+
 #: A run with dry joints, in which an energy of softening has no effect.
 DRY = dict(
     joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}},

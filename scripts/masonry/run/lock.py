@@ -16,8 +16,8 @@ from ..numbers.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
 FILES = (
-    "curve.csv curve.png cracks.png run.json report.html run.checkpoint shakes.csv errors.log "
-    "view.html capacity.json capacity.png domain.json domain.png blocks.pvd "
+    "curve.csv curve.png cracks.png run.json report.html run.checkpoint shakes.csv travel.csv "
+    "piers.csv errors.log view.html capacity.json capacity.png domain.json domain.png blocks.pvd "
     "joints.pvd connectors.pvd mechanism.json mechanism.png mechanism_blocks.vtu "
     "mechanism_joints.vtu blocks_*.vtu joints_*.vtp connectors_*.vtp"
 ).split()

@@ -21,6 +21,8 @@ Field = Annotated[
     Union[float, Callable[[float, float, float], float]], orFunction(number("Pa", -1e9, 1e9))
 ]
 
+Friction = Annotated[float, number("degrees", -60, 60)]
+
 
 def doubtPress(stress: float, name: str) -> None:
     if 0 < stress < 1e3:
@@ -89,6 +91,7 @@ def pressure(
     towards: Direction,
     part: Part | None = None,
     normal: bool = True,
+    friction: Friction = 0.0,
 ) -> tuple[float, float, float]:
     """A pressure that may vary with the place: of water, earth, grain, snow, or fill on an arch. It
     grows in :meth:`settle`, and stays.
@@ -107,9 +110,11 @@ def pressure(
     :param part: name of a part of the bricks; None: all
     :param normal: whether it acts along the normals of the faces, as water does; else along
         ``towards``, on the projected area, as snow and fill do
+    :param friction: angle between the force and the normal, by which what presses drags a face
+        down, as soil does (:mod:`masonry.earth`) [degrees]
     :returns: the sum of the forces [N]
     """
-    forces = pressures(description, value, towards, part, normal)
+    forces = pressures(description, value, towards, part, normal, friction)
     sizes = [math.hypot(*one.force) for one in forces]
     largest = max(sizes)
     if not largest > 0:

@@ -124,6 +124,7 @@ class ResultSummary:
             recorded_joints=[joint.name for joint in description.joints],
             recorded_drifts=self._columnsOf(description.drifts, "mrad"),
             recorded_sections=self._columnsOf(description.sections, "kN", "kNm"),
+            **({"piers": description.piers} if description.piers else {}),
             **self._connections(),
             script=shortened(scene.script.commands),
             **self._summary,

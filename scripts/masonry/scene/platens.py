@@ -209,7 +209,7 @@ def hold(
             f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is"
             " in space"
         )
-    target = _brick(description, where, name, fixed=True, loaded=False)
+    target = brickTarget(description, where, name, fixed=True, loaded=False)
     target.freedom = "".join({*axes, *"yXZ"} if description.plane else axes)
     return target
 
@@ -218,7 +218,7 @@ def hold(
 @validated
 def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
     """Record the motion of a brick, at the point that is given. Parameters as in :meth:`hold`."""
-    return _brick(description, where, name, fixed=False, loaded=False)
+    return brickTarget(description, where, name, fixed=False, loaded=False)
 
 
 @describes
@@ -226,10 +226,12 @@ def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
     """A brick that loads act on, at its centre or at the point that is given; it is rigid.
     Parameters as in :meth:`hold`."""
-    return _brick(description, where, name, fixed=False, loaded=True)
+    return brickTarget(description, where, name, fixed=False, loaded=True)
 
 
-def _brick(description, where, name, fixed, loaded):
+def brickTarget(
+    description: Any, where: Any, name: str | None, fixed: bool, loaded: bool
+) -> Target:
     index, point = description.find(where)
     point = point or description.middle(index)
     return description.add(

@@ -47,9 +47,11 @@ def facesAgainst(description, towards, part, name, least=LOOKING):
     return faces
 
 
-def pressures(description, value, towards, part, normal):
+def pressures(description, value, towards, part, normal, friction=0.0):
     """The forces of a pressure: on each face at its middle and at one more point, or at two more in
     space. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError."""
+    if friction and not normal:
+        raise ValueError("pressure: friction is of a pressure along the normals (normal=True)")
     forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
     for face in facesAgainst(description, towards, part, "pressure", GRAZING):
         outward, arm = np.array(face.normal), face.area**0.5 / 4
@@ -58,7 +60,11 @@ def pressures(description, value, towards, part, normal):
         side /= np.linalg.norm(side)
         axes = arm * np.array([side, np.cross(outward, side)])
         total, *moments = _integral(face, value, axes[: 1 if description.plane else 2])
-        unit = -outward if normal else -(outward @ along) * along
+        unit = -(outward @ along) * along
+        if normal:
+            down = outward[2] * outward - (0, 0, 1)
+            steepness = max(GRAZING, np.linalg.norm(down))
+            unit = math.tan(math.radians(friction)) / steepness * down - outward
         ends = [face.middle, *(face.middle + axis for axis in axes)]
         for point, size in zip(ends, [total - sum(moments), *moments]):
             forces.append(FaceForce(face.block, list(size * unit), tuple(point)))
@@ -112,7 +118,7 @@ def atPlace(value, place, kind, name):
 def placesBelow(description, points):
     """Where loads stand that are let down from some points: of each the numbers of the bricks that
     have it on their highest face that looks up, and share it where it is on a joint, and the point
-    there [m]. Raises ValueError if there is none."""
+    there [m]; no bricks where there is none."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:
@@ -124,9 +130,7 @@ def placesBelow(description, points):
             inward = np.cross(sides, (x, y, high) - corners) @ normal
             if high <= z + near and min(inward) >= -near * np.abs(sides).max():
                 below[face.block] = max(float(high), below.get(face.block, -math.inf))
-        if not below:
-            raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")
-        high = max(below.values())
+        high = max(below.values(), default=float(z))
         bricks = [brick for brick, level in below.items() if level >= high - near]
         found.append((bricks, (float(x), float(y), high)))
     return found

@@ -12,18 +12,21 @@ import itertools
 from dataclasses import dataclass
 from typing import Annotated, Any, Callable, Iterator
 
+import numpy as np
 from yade import O, Vector3
 
 from .._masonry import resultant
-from ..arguments import Direction, Name, shown, validated
+from ..arguments import Direction, Name, orNone, shown, validated
+from ..arguments import vector as point
 from ..arguments import name as nameOf
 from ..numbers.columns import Column
 from ..errors import Refused
-from .platens import Coordinate
+from .platens import Coordinate, brickTarget
 from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .ties import GROUND
 from .script import describes
 
+Corner = Annotated[Any, orNone(point("m", 1e6))]
 BASE = "base"  # name of the section that every run on a platen records
 ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
 LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not lie above it
@@ -38,6 +41,7 @@ class Section:
     part: str  # of the bricks; None: all
     middle: tuple  # point in space about which moments are [m]
     isBase: bool = False  # recorded without a command
+    members: Any = None  # indices of the bricks whose joints count alone; None: those of its part
     interactions: tuple | list = ()  # YADE's, of its joints, when the scene is built
     _read: tuple = (None, None)  # the last reading, and its forces
 
@@ -50,7 +54,11 @@ class Section:
         #: whether every body is above it, by its id; the ground is not
         self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}
         self._structure = structure
-        self._parts = dict(zip(structure.ids, (b.part for b in description.bricks)))
+        own = (
+            b.part if self.members is None else n in self.members
+            for n, b in enumerate(description.bricks)
+        )
+        self._parts = dict(zip(structure.ids, own))
         pairs = [(one, (one.id1, one.id2)) for one in structure.interactions]
         crossing = [(one, ids) for one, ids in pairs if self._cross(*ids)]
         self.interactions = [one for one, _ in crossing]
@@ -76,7 +84,8 @@ class Section:
             return False
         lower, upper = (one, other) if self.above[other] else (other, one)
         # a joint to a platen is of the part of its brick
-        return self.part in (None, self._parts.get(upper, self._parts.get(lower)))
+        wanted = self.part if self.members is None else True
+        return wanted in (None, self._parts.get(upper, self._parts.get(lower)))
 
     def forces(self) -> tuple[Any, Any]:
         """Force [N] and moment about the middle [N m] of what is above on what is below: two
@@ -219,6 +228,94 @@ def section(
     found = Section(name, float(z), part, _middleAt(description, z, part, name))
     description.sections.append(found)
     return found
+
+
+@describes
+@validated
+def pier(
+    description: Any,
+    low: Corner = None,
+    high: Corner = None,
+    name: Name | None = None,
+    part: Part | None = None,
+) -> None:
+    """Record normal force, shear force and moment of a pier at its mid-height, as :meth:`section`
+    does, and its drift, for checks by codes (:mod:`masonry_capacity.piers`).
+
+    Without a box all piers of a wall are recorded, or the wall as one: what stands beside openings
+    in courses that have more of them than the courses above and below.
+
+    :param low: lowest corner (x, y, z) of the box around the pier [m], in which the bricks have
+        their centroids; its longer horizontal side is the length of the pier
+    :param high: its highest corner [m]
+    :param name: of the columns, and of several their beginning; None: ``pier`` and a number
+    :param part: of the bricks, of which the piers are without a box; None: all
+    """
+    boxes = [(low, high)]
+    if (low is None) != (high is None):
+        raise ValueError("pier: give both corners of its box, or none")
+    if low is None:
+        boxes = [*_besideOpenings(description, part)]
+        if not boxes:
+            raise ValueError("pier: openings overlap so that none is found: give low and high")
+    for one, other in boxes:
+        own = name if name and len(boxes) == 1 else f"{name or 'pier'}{len(description.piers)}"
+        _addPier(description, np.array(one), np.array(other), own)
+
+
+def _besideOpenings(description, part):
+    """Lowest and highest corners of the piers of a wall [m]."""
+    corners = [np.array(b.corners) for b in description.bricks if part in (None, b.part)]
+    boxes = np.array([[c.min(axis=0), c.max(axis=0)] for c in corners]).round(6)
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    along = int(high[1] - low[1] > high[0] - low[0])
+    levels, found = np.unique(boxes[:, :, 2]), []
+    for bottom, top in zip(levels, levels[1:]):
+        here = boxes[(boxes[:, 0, 2] < top) & (boxes[:, 1, 2] > bottom)][:, :, along]
+        spans: list[list[float]] = []
+        for start, end in sorted(here.tolist()):
+            if spans and start <= spans[-1][1] + 1e-5:
+                spans[-1][1] = max(spans[-1][1], end)
+            else:
+                spans.append([start, end])
+        if found and found[-1][0] == spans:
+            found[-1][2] = top
+        else:
+            found.append([spans, bottom, top])
+    counts = [0, *(len(spans) for spans, *_ in found), 0]
+    for n, (spans, bottom, top) in enumerate(found, 1):
+        if counts[n] > max(counts[n - 1], counts[n + 1]):
+            for start, end in spans:
+                first, last = np.append(low[:2], bottom), np.append(high[:2], top)
+                first[along], last[along] = start, end
+                yield first, last
+
+
+def _addPier(description, low, high, name):
+    """Take a pier, the bricks in a box. Raises ValueError."""
+    middles = np.array([np.mean(b.corners, axis=0) for b in description.bricks])
+    middle, size = (low + high) / 2, high - low
+    inside = np.all((middles > low) & (middles < high), axis=1)
+    members = [int(n) for n in np.nonzero(inside)[0]]
+    # bricks of the lowest and the highest course, the nearest to the axis of the pier first
+    members.sort(key=lambda n: float(np.abs(middles[n] - middle)[:2].sum()))
+    level = lambda n: round(float(middles[n][2]), 6)
+    ends = [choose(members, key=level, default=0) for choose in (min, max)]
+    if not members or level(ends[0]) == level(ends[1]):
+        raise ValueError(f"pier {name}: its box must have two courses of bricks at least")
+    foot, head = (
+        brickTarget(description, n, f"{name}_{end}", fixed=False, loaded=False)
+        for n, end in zip(ends, ("foot", "head"))
+    )
+    description.drifts.append(Drift(f"{name}_drift", foot, head))
+    at, own = tuple(middle.tolist()), frozenset(members)
+    description.sections.append(Section(name, at[2], None, at, members=own))
+    along, about = ("x", "y") if size[0] >= size[1] else ("y", "x")
+    columns = {"N": "N_kN", "V": f"V_{along}_kN", "M": f"M_{about}_kNm"}
+    columns["drift"] = f"drift_{along}_mrad"
+    long, deep, tall = (float(side) for side in (max(size[:2]), min(size[:2]), size[2]))
+    entry = {"name": name, "length_m": long, "thickness_m": deep, "height_m": tall}
+    description.piers.append({**entry, **{n: f"{name}_{head}" for n, head in columns.items()}})
 
 
 def _middleAt(description, z, part, name):

@@ -15,7 +15,7 @@ from ..arguments import Direction, Freedoms, Level, isNumber, number, shown, val
 from ..errors import Refused
 from ..model.load_names import nameOf
 from .bounds import findBound
-from ..scene.loads import Field, Force, Pressure, Stress
+from ..scene.loads import Field, Force, Friction, Pressure, Stress
 from ..scene.loads import checkedForce, doubtPress, doubtWind, windForces
 from ..scene.pressures import pressures
 from ..scene.targets import AnyTarget, Loaded, MovingPlaten, Part
@@ -103,10 +103,11 @@ def _windOn(scene, pressure, towards, part):
     return _inKilopascals(_onFaces(scene, forces, "wind", towards, part), pressure)
 
 
-def _pressureOn(scene, value, towards, part, normal, grown=False):
+def _pressureOn(scene, value, towards, part, normal, grown=False, friction=0.0):
     """The load of a pressure, of which 1 is the whole. Raises ValueError."""
-    forces = pressures(scene.description, value, towards, part, normal)
+    forces = pressures(scene.description, value, towards, part, normal, friction)
     kind = "pressure" if normal else "pressure in plan"
+    kind += f" at {friction:g}°" if friction else ""
     return _onFaces(scene, forces, kind, towards, part, grown)
 
 
@@ -169,16 +170,17 @@ def pressure(
     towards: Direction,
     part: Part | None = None,
     normal: bool = True,
+    friction: Friction = 0.0,
     longest: Duration | None = None,
 ) -> str:
     """Give faces another pressure, and wait as :meth:`load` does. Pressures that grew in
-    :meth:`settle` or :meth:`grow` stay; a later :meth:`pressure` of the same direction, part and
-    ``normal`` replaces this one.
+    :meth:`settle` or :meth:`grow` stay; a later :meth:`pressure` of the same direction, part,
+    ``normal`` and ``friction`` replaces this one.
 
-    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
-        ``normal``: as before the first stage
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part``,
+        ``normal`` and ``friction``: as before the first stage
     """
-    made = _pressureOn(scene, value, towards, part, normal)
+    made = _pressureOn(scene, value, towards, part, normal, friction=friction)
     return _putOn(scene, "pressure", made, longest)
 
 
@@ -262,7 +264,7 @@ def grow(
     ]
     if pressure is not None:
         even = isNumber(pressure) and pressure != 0
-        make = _evenOn if even and not loads and not dead else _pressureOn
+        make: Any = _evenOn if even and not loads and not dead else _pressureOn
         made.append(make(scene, pressure, towards, part, normal, True))
     if len(made) == 1 and not dead:
         made[0].most *= most
@@ -371,6 +373,12 @@ def prepare(scene, word, arguments):
         _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")))
     elif word == "pressure" or get("pressure") is not None:
         # its value, which may be a function, has no part in where its engines are
-        _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")), grown)
+        _pressureOn(
+            scene,
+            0.0,
+            *(arguments[n] for n in ("towards", "part", "normal")),
+            grown,
+            get("friction", 0.0),
+        )
     elif word == "travel":
-        placed(scene, arguments["along"])
+        placed(scene, arguments["along"], get("axles", [(0.0, 1.0)]), get("spread", 0.0))

@@ -2,12 +2,16 @@
 """Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and
 forces at the base."""
 
+import csv
+import os
+
 import numpy as np
 
 from masonry.errors import Refused
 from masonry_capacity import bilinear_curve
 from .. import curve_figure
 from masonry.numbers import drawing, quantities
+from masonry.numbers.files import readText
 from ..curve_figure import bare, energies, unitOf
 
 from .pieces import (
@@ -143,6 +147,7 @@ def found(record):
     else:
         yield missing("The run has no push, so there are no drifts at a peak or at a first crack.")
     yield from _drifts(record)
+    yield from _piers(record)
     yield from _answers(record.run)
 
 
@@ -186,6 +191,15 @@ def _drifts(record):
             rows.append(quantities.Number(head, largest, "mrad", meaning, source))
     if rows:
         yield numbers(rows, "Drifts that were recorded")
+
+
+def _piers(record):
+    """Checks of piers by codes, if masonry_capacity.piers has written them."""
+    path = os.path.join(record.directory, "piers.csv")
+    if os.path.exists(path):
+        heads, *lines = csv.reader(readText(path).splitlines())
+        caption = "Piers by codes, beside what the run found. Source: piers.csv"
+        yield table([head.replace("_", " ") for head in heads], lines, caption)
 
 
 def _answers(run):

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Checks of piers by codes, against numbers by hand."""
+
+from usual import *
+from made_runs import writeRun
+from masonry_capacity import piers
+
+PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
+HEADS = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN"]
+COLUMNS = {"N": "a_N_kN", "V": "a_V_x_kN", "M": "a_M_y_kNm", "drift": "a_drift_x_mrad"}
+PIER = {"name": "a", "length_m": 1.0, "thickness_m": 0.2, "height_m": 1.5, **COLUMNS}
+BED = {"compressiveStrength": 5e6, "cohesion": 0.2e6, "cap": True}
+
+
+def made(folder, normal=-100.0, moment=5.0, **entries):
+    """A run of a pier of 1 × 0.2 × 1.5 m under 100 kN, pushed with up to 20 kN."""
+    row = lambda x: [x, x, 20 * x, 20 * x, normal, 20 * x, moment * x, 4 * x]
+    entries = {"piers": [PIER], "joints": {"bed": BED}, "stages": [PUSH], **entries}
+    return writeRun(folder, [*HEADS, *COLUMNS.values()], map(row, (0, 0.5, 1)), **entries)
+
+
+def test_a_pier_has_the_strength_and_the_drift_of_hand_calculation(tmp_path):
+    """H0 = 5/20 + 0.75 = 1 m, σ0 = 0.5 MPa, ν = 0.1, D' = 3 (0.5 - 20/100) = 0.9 m. Flexure: 50 kN
+    (1 - 1.15 ν) and 50 kN (1 - ν/0.85); sliding (60 + 40)/2.2 = 45.45 kN."""
+    one, other = piers.check(made(tmp_path, failure_mode="diagonal cracking"))
+    assert (one["H0_m"], one["nu"], one["D_m"]) == approx((1.0, 0.1, 0.9))
+    assert (one["failure"], one["clause"]) == ("flexure", "EN 1998-3 C.4.2.1")
+    assert one["capacity_kN"] == approx(44.25)
+    assert other["capacity_kN"] == approx(50 * (1 - 0.1 / 0.85))
+    assert one["demand_over_capacity"] == approx(20 / 44.25)
+    # 4 mrad; near collapse 4/3 of 0.8 % H0/L, and 1 %
+    assert one["drift_over_capacity"] == approx(0.4 / (0.8 * 4 / 3))
+    assert other["drift_over_capacity"] == approx(0.4)
+    assert one["otherwise"] == other["otherwise"] == "*"
+    *_, row = piers.check(made(tmp_path, failure_mode="rocking"))
+    assert row["otherwise"] == ""
+
+
+def test_a_short_span_slides_and_irregular_masonry_cracks_along_its_diagonal(tmp_path):
+    """H0 = 0.75 m: sliding 100/(1 + 0.9) = 52.6 kN before flexure of 59 kN; with tau0 Turnšek and
+    Čačovič, 0.2 m² ft/1.5 √(1 + 0.5/ft), ft = 0.09 MPa."""
+    folder = made(tmp_path, moment=0.0)
+    one, _ = piers.check(folder)
+    assert (one["failure"], one["capacity_kN"]) == ("sliding", approx(100 / 1.9))
+    assert one["clause"] == "EN 1998-3 C.4.3.1"
+    _, row = piers.check(folder, tau0=0.06)
+    assert row["failure"] == "shear"
+    assert row["capacity_kN"] == approx(0.2e3 * 0.09 / 1.5 * math.sqrt(1 + 0.5 / 0.09))
+
+
+def test_the_table_is_a_file_and_what_cannot_be_checked_is_refused(tmp_path, capsys):
+    assert piers.main([made(tmp_path), "--fm", "10", "--fb", "20"]) == 0
+    with open(tmp_path / "piers.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["nu"] for row in rows] == ["0.05", "0.05"]
+    assert "EN 1998-3:2005" in capsys.readouterr().out
+    for entries, message in (
+        ({"piers": []}, "names no piers"),
+        ({"normal": 3.0}, "pier a has no compression"),
+        ({"joints": {"bed": {**BED, "cap": False}}}, "give fm"),
+    ):
+        with raises(Refused, match=message):
+            piers.check(made(tmp_path, **entries))
