@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Predictions of walls of stone and of bricks see nothing that was measured in the tests, and are of
-what the rules say."""
+"""Predictions of walls of stone and of bricks see nothing that was measured in the tests, and are
+of what the rules say."""
 
 from usual import *
 import assumed  # first: it finds the modules of the stone walls

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the runs of the walls of bricks say beside the 17 tests, and predictions of all 52; README.md
-says how each number is defined.
+"""What the runs of the walls of bricks say beside the 17 tests, and predictions of all 52;
+README.md says how each number is defined.
 
 /usr/bin/python3 validation/brick_walls/compare.py choose results/brick_walls/choose
 /usr/bin/python3 validation/brick_walls/compare.py predict results/brick_walls/push

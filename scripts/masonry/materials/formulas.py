@@ -414,8 +414,8 @@ def _crushing(v, bed, head):
     if shortened > MAX_PEAK_STRAIN:
         strain = "peak_strain" if v.peak_strain else "2 fc/E"
         say(
-            f"warning: materials.masonry: with E {v.E:.4g} Pa and fc {fc:.4g} Pa masonry shortens by"
-            f" {100 * shortened:.2g} % ({strain}) before it crushes, more than"
+            f"warning: materials.masonry: with E {v.E:.4g} Pa and fc {fc:.4g} Pa masonry shortens"
+            f" by {100 * shortened:.2g} % ({strain}) before it crushes, more than"
             f" {100 * MAX_PEAK_STRAIN:g} %: walls then lean and crush early. 2 fc/E is 0.24 % with"
             " E = 1000 fk of EN 1996-1-1, 3.7.2, and 0.3 to 0.5 % in table C8.5.I of Circolare"
             " 7/2019: is E of the masonry, and in Pa?"
