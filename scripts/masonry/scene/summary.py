@@ -8,7 +8,6 @@ import statistics
 
 from ..bricks import Bricks, summary
 from ..materials import loadingBlock
-from ..model.loading import Pattern
 from ..terminal import say
 from ..units import GRAVITY
 
