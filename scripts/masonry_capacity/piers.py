@@ -209,9 +209,9 @@ def check(
 ) -> list[dict[str, Any]]:
     """Check the piers of a run by both codes, each where its shear force is largest.
 
-    The span H0 = |M|/|V| + h/2 is that of the larger moment at foot and head, from the moment M at
-    mid-height; ν = N/(A fm); D' = 3 (L/2 - H0 |V|/N), at most L, is the compressed part under the
-    forces of the run.
+    The span H0 = M/V + h/2 is that of the larger moment at foot and head, from the moment M at
+    mid-height; ν = N/(A fm); D' = 3 (L/2 - H0 V/N), at most L, is the compressed part under the
+    forces of the run, all without signs.
 
     :param directory: folder of results
     :param fm: compressive strength, and ``fv0``: cohesion of the bed joint [MPa]; None: those of

@@ -114,6 +114,11 @@ def test_water_that_rises_in_stages_replaces_what_was_there(tmp_path):
         assert pushed() == approx(WATER * level**2 / 2, rel=0.01)
     assert scene.pressure(0, (1, 0, 0)) == AT_REST
     assert abs(pushed()) < 10
+    down = lambda: 1e3 * scene.results.column("base_force_z_kN")[-1]
+    before = down()
+    assert scene.pressure(1e3, (1, 0, 0), friction=20) == AT_REST
+    dragged = 2e3 * math.tan(math.radians(20))
+    assert (pushed(), before - down()) == (approx(2e3, rel=0.01), approx(dragged, rel=0.02))
 
 
 def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
