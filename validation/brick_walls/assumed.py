@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "stone_walls"))
 import rules
-from masonry.materials.codes import BOND, FRICTION, GRAVITY, MEAN, SHEAR, SHEARING, STIFFNESS
+from masonry.materials.codes import FRICTION, GRAVITY, MEAN, SHEAR, SHEARING, STIFFNESS
 
 WALLS = os.path.join(HERE, "walls.csv")
 MORTAR = {"GP": 0.010, "TL": 0.002}  # thickness [m]
