@@ -224,7 +224,9 @@ _any = _target(
 )
 kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)
 _moving = _target("a platen of this scene that moves", lambda t: t.box and not t.fixed)
-_held = _target("a platen or brick of this scene that is held", lambda t: t.fixed)
+_held = _target(
+    "a platen or brick of this scene that is held from its beginning", lambda t: t.fixed
+)
 _allHeld = lambda v, context: listOf(_held)(v if isListed(v) else [v], context)
 AnyTarget = Annotated[Target, _any]
 Loaded = Annotated[Target, kindOfLoaded]
