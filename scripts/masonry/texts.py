@@ -199,6 +199,11 @@ class TextFile:
         )
 
 
+def printable(text: object) -> str:
+    """A text of a file as a message may have it: what cannot be printed is written out."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
+
+
 def finite(word: str) -> float:
     """The finite number that a word stands for. Raises ValueError."""
     if not isNumber(word):

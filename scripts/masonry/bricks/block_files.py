@@ -21,7 +21,7 @@ import numpy as np
 from ..arguments import FilePath, number, validated
 from ..errors import Refused
 from ..terminal import say
-from ..texts import MISREAD, TextFile
+from ..texts import MISREAD, TextFile, printable
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
 from .compas_files import readCompas
@@ -134,7 +134,7 @@ def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
     except Refused:
         raise
     except MISREAD as error:
-        raise ValueError(f"{path}: cannot be read: {error}") from None
+        raise ValueError(f"{path}: cannot be read: {printable(error)}") from None
 
 
 def _plain(path):

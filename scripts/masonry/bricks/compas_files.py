@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arguments import FilePath, isNumber, shown, validated
 from ..errors import Refused
-from ..texts import MISREAD, TextFile
+from ..texts import MISREAD, TextFile, printable
 
 #: Corners of a box over half its sides, and its faces.
 _BOX = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
@@ -88,7 +88,7 @@ def readCompas(path: FilePath) -> CompasFile:
     except Refused:
         raise
     except MISREAD as error:
-        raise Refused(f"{path}: cannot be read: {error}") from None
+        raise Refused(f"{path}: cannot be read: {printable(error)}") from None
     if not stones:
         raise Refused(f"{path}: no mesh, box or polyhedron")
     return found

@@ -15,7 +15,7 @@ from ..errors import Refused, refuse
 from ..materials import dry
 from ..materials.kinds import RIGID
 from ..terminal import say
-from ..texts import MISREAD
+from ..texts import MISREAD, printable
 from ..units import GRAVITY
 from .history import MAX_DISPLACEMENT
 
@@ -84,10 +84,12 @@ def readProblem(path: FilePath, results: FilePath) -> Problem:
     except Refused:
         raise
     except MISREAD as error:
-        raise Refused(f"{path}: cannot be read: {error or type(error).__name__}") from None
+        raise Refused(
+            f"{path}: cannot be read: {printable(error) or type(error).__name__}"
+        ) from None
     if not problem.held:
         problem.problems.append("no block is held")
-    refuse(problem.problems, f"{path}: ", "; ")
+    refuse([*map(printable, problem.problems)], f"{path}: ", "; ")
     return problem
 
 
