@@ -19,7 +19,7 @@ WEIGHT = WIDTH * 0.4 * HEIGHT * 2400 * G  # [N]
 def pier(folder, *words, stone=STONE):
     """A pier that stands on its base, with a handle at its top and in its middle."""
     blocks = bricks.stack(6, (WIDTH, 0.4, HEIGHT / 6))
-    scene = standing(folder, blocks, stone, "--points", "9", *words, rate=20)
+    scene = standing(folder, blocks, stone, *words, rate=20)
     handles = scene.handle(-1, "top"), scene.handle(2, "middle")
     scene.settle()
     return scene, *handles
