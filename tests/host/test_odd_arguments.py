@@ -302,6 +302,7 @@ CALLS = {
     "bricks.boxCorners": (bricks.boxCorners, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "bricks.summary": (bricks.summary, dict(bricks=WALL)),
     "bricks.fromFile": (bricks.fromFile, dict(path="cube.obj")),
+    "bricks.readCompas": (bricks.readCompas, dict(path="cube.json")),
     "bricks.fromOutlines": (
         bricks.fromOutlines,
         dict(path="stones.csv", thickness=0.2, mortar=0.02),
@@ -390,6 +391,10 @@ def folder(tmp_path, monkeypatch, pushed):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "path.csv").write_text("displacement_mm\n0.05\n-0.05\n0\n")
     (tmp_path / "cube.obj").write_text(CUBE_FILE)
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    vertices = {str(n): dict(zip("xyz", corner)) for n, corner in enumerate(corners)}
+    faces = dict(zip("abcd", [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]))
+    (tmp_path / "cube.json").write_text(json.dumps(dict(vertex=vertices, face=faces)))
     (tmp_path / "stones.csv").write_text("a,0,0\na,1,0\na,1,1\na,0,1\n")
     (tmp_path / "spectrum.csv").write_text("0 0.1\n0.1 0.3\n0.5 0.3\n4 0.04\n")
     shutil.copytree(pushed, tmp_path / "run")
@@ -476,6 +481,7 @@ NOT_OURS = (
 #: By what else a message may name an argument: a property in words, points as corners, what a
 #: lintel lies on, or the end of a file's name.
 OTHERWISE = {
+    "readCompas": "cannot read",
     "addBlock": "corner",
     "bricks.Lintel": "openings",
     "bricks.from": "must end with",

@@ -59,7 +59,7 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_
         bent.push(middle, 0.4, direction=(0, 1, 0))
         bent.finish()
         peaks[points] = readRun(tmp_path / str(points))["peak_base_shear_kN"]
-    assert peaks[None] == peaks["5"]
+    assert peaks[None] == approx(peaks["9,9"], rel=0.03)
     assert 1.15 < peaks["3"] / peaks["9,9"] < 1.4
     assert peaks["5"] == approx(peaks["9,9"], rel=0.03)
 

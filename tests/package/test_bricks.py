@@ -232,7 +232,9 @@ def test_any_opening_is_cut_out_or_refused(x, z, width, height):
     low, high = boxes(wall)
     assert (high - low)[:, 0].min() >= L / 4 * (1 - 1e-5)
     assert (high - low)[:, 2].min() >= H / 4 * (1 - 1e-5)
-    assert not [p for p in wall.problems() if "odd size" not in p]
+    isSlit = width < L / 4 or height < H / 4  # faces across it look like ones that should touch
+    allowed = "odd size", *["a gap of up to"] * isSlit
+    assert not [p for p in wall.problems() if not any(one in p for one in allowed)]
 
 
 def test_a_brick_that_an_opening_leaves_in_an_l_is_pieces_of_one_brick():

@@ -79,6 +79,8 @@ class Drawn:
         turns = [MIRROR, np.eye(3, dtype=int)] + [TURN, TURN @ MIRROR] * (not self.plane)
         self.place = Place(pick.choice(turns), pick.choice([NOTHING, (2.0, -3.0, 1.5)]))
         self.options = pick.choice(OPTIONS)
+        if not elastic and "--points" in self.options:  # joints that open get others on the way
+            self.options = ""
         self.functors = pick.random() < 0.15 and "--points" not in self.options
         self.loads, self.grown = {}, np.zeros(3)
         self.faces, self.gravity = {}, np.array([0, 0, -G])
