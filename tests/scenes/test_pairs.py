@@ -35,6 +35,7 @@ SHAPES = {
 }
 MIRROR, TURN = np.diag([-1, 1, 1]), np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
 OPTIONS = ["", "", "--points 5", "--points 4,3", "--density-scaling 4", "--dt-fraction 0.5"]
+STIFF = ["" if "points" in one else one for one in OPTIONS]  # of joints that may open
 OPTIONS += ["--damping 0.7", "--joints cyclic", "--rate 10"]
 NOTHING = (0.0, 0.0, 0.0)
 
@@ -78,9 +79,7 @@ class Drawn:
         self.tied, self.sprung = pick.random() < 0.4, pick.random() < 0.3
         turns = [MIRROR, np.eye(3, dtype=int)] + [TURN, TURN @ MIRROR] * (not self.plane)
         self.place = Place(pick.choice(turns), pick.choice([NOTHING, (2.0, -3.0, 1.5)]))
-        self.options = pick.choice(OPTIONS)
-        if not elastic and "--points" in self.options:  # joints that open get others on the way
-            self.options = ""
+        self.options = pick.choice(OPTIONS if elastic else STIFF)
         self.functors = pick.random() < 0.15 and "--points" not in self.options
         self.loads, self.grown = {}, np.zeros(3)
         self.faces, self.gravity = {}, np.array([0, 0, -G])

@@ -66,7 +66,7 @@ def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path
         (
             4,
             -5,
-            "value 3 of the list.*must be a platen or brick of this scene that is held from its beginning",
+            "value 3 of the list.*a platen or brick of this scene that is held from its beginning",
         ),
         (3, lambda x, y, z: 0.0, "must not be zero"),
         (3, lambda x, y, z: "far", "'far' must be a number"),
