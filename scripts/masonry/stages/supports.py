@@ -103,8 +103,8 @@ def move(
 ) -> str:
     """Move fixed targets by a displacement, in straight lines at once: settlement or spreading of
     supports, or a trough under a row of them, as ``scene.move(footings, z=lambda x, y, z: -20 *
-    math.exp(-x * x / 18))``. They start and stop smoothly, and none turns. Reactions have the
-    inertia of what moves, which a note tells if it is much: :meth:`settle` takes it out of the last
+    math.exp(-x * x / 18))``. They start and stop smoothly, and none turns. Reactions include the
+    inertia of what moves; a note says so where it is large. :meth:`settle` takes it out of the last
     row, a lower rate out of all.
 
     :param target: one that is held, or a list of them

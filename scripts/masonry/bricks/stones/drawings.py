@@ -40,7 +40,7 @@ ASIDE = set("symbol marker pattern clipPath mask".split())
 BESIDE = set("image text foreignObject".split())
 MEASURES = "x y width height cx cy r rx ry x1 y1 x2 y2".split()  # attributes that are lengths
 _LENGTH = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*(?:px|mm|cm|in|pt|pc)?\s*")
-#: Units of length of SVG and GeoJSON, and codes of $INSUNITS of DXF [m].
+#: Units of length of SVG, and codes of $INSUNITS of DXF [m].
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6}
 INSUNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 14: 0.1}
 

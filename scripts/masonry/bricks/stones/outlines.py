@@ -151,6 +151,8 @@ def fromOutlines(
 def _scale(scale, unit):
     """Metres in one unit of a file. What the user says counts."""
     if scale is None:
+        if unit:
+            say(f"note: fromOutlines: one unit of the file is {unit:g} m, as it says")
         return unit or 1.0
     if unit and abs(scale / unit - 1) > 0.01:
         say(f"note: fromOutlines: the file says {unit:g} m for its unit; scale={scale:g} counts")

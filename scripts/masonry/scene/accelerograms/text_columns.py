@@ -85,15 +85,14 @@ class _Said:
             self._takeUnit(" ".join(row.cells), row.line)
         if table.heads and table.rows:
             self._columns(table.heads[-1], len(table.rows[0].cells))
-        for (key, _), value in self._known.items():
-            setattr(self, key, value)
+        vars(self).update(self._known)
 
     def _take(self, key, value, line):
         if value is None:
             return
-        if (key, True) in self._known:
+        if key in self._known:
             raise self._file.refused(f"it says {key} twice", line)
-        self._known[key, True] = value
+        self._known[key] = value
 
     def _takeUnit(self, text, line):
         self._take("unit", self._file.read(unitSaid, text, line), line)
