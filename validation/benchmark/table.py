@@ -1,125 +1,180 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Seconds and microseconds a step of whole runs, of one build or of several side by side.
+"""Processor seconds and steps of whole runs, of one build or of several side by side.
 
-    # the plugin that is installed
-    /usr/bin/python3 validation/benchmark/table.py
-    # two folders with a `masonry` package each, some rows
-    /usr/bin/python3 validation/benchmark/table.py SITE OLDER --rows fast wide
+    /usr/bin/python3 validation/benchmark/table.py                     # the plugin that is installed
+    /usr/bin/python3 validation/benchmark/table.py NEW OLD OLDER       # checkouts, plugin beside the sources
+    /usr/bin/python3 validation/benchmark/table.py NEW OLD --rows house "fast COMP-4"
 
-The builds take turns, and of each the best of ``--repeat`` runs counts. Scenes are those of this
-repository. A row whose run fails, for example because an older build does not know one of its
-options, has a dash. ``plain`` and ``plain plane`` are the steps of the plain program beside those
-of ``rigid`` and ``deformable``, see ``plain.py``.
+The builds take turns, and of each the best of ``--repeat`` runs counts. Seconds are those of the
+processor, of a run and all its child processes. The columns after the first build are what it takes
+over each other build. Each build runs scenes of its own checkout. A row whose run fails, for
+example because an older build does not know one of its options, has a dash.
 """
 
 import argparse
 import json
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
-import time
+from dataclasses import dataclass
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-YADE, ONE, PYTHON = (
-    ["yade", "-n", "-x"],
-    ["yade", "-j1", "-n", "-x"],
-    ["/usr/bin/python3"],
-)
-COMP4 = "scripts/wall_comp4.py"
-
-
-def ofSteps(folder, seconds, said):
-    with open(os.path.join(folder, "run.json")) as file:
-        return json.load(file)["microseconds_per_step"], "µs a step"
+YADE = ["yade", "-j1", "-n", "-x"]
+PYTHON = ["/usr/bin/python3"]
+BENCHMARK = "validation/benchmark/"
+ROWS_OF_A_STUDY = """\
+from {package} import Study, uniform
+study = Study("{scene}", options={options}, runs={runs}, seed=1, jobs=1, vary={{"{name}": uniform(0.6, 0.8)}})
+"""
 
 
 def ofRun(folder, seconds, said):
     return seconds, "s"
 
 
-def ofImport(folder, seconds, said):
-    return float(said), "s"
+def ofSteps(folder, seconds, said):
+    with open(os.path.join(folder, "run.json")) as file:
+        return json.load(file)["steps"], "steps"
 
 
-def ofWide(folder, seconds, said):
-    return float(re.search(r"([\d.]+) µs a step", said)[1]), "µs a step"
+def ofEachStep(folder, seconds, said):
+    with open(os.path.join(folder, "run.json")) as file:
+        return json.load(file)["microseconds_per_step"], "µs a step"
 
 
-def ofPlain(folder, seconds, said):
-    return float(re.search(r"plain program +([\d.]+) µs", said)[1]), "µs a step"
+def ofEachSubcontact(folder, seconds, said):
+    step, count = re.search(r"([\d.]+) µs a step, (\d+) subcontacts", said).groups()
+    return 1000 * float(step) / float(count), "ns a subcontact and step"
 
 
-PLAIN = [*PYTHON, "validation/benchmark/plain.py", "--rounds", "1"]
-IMPORT = (
-    "import time, masonry, yade; t = time.time(); from masonry import Scene; print(time.time() - t)"
-)
-#: Rows: the command, and a function of the folder of results, the seconds of the run, and what it
-#: said that gives number and unit.
+@dataclass
+class Row:
+    """A run: its words, where {scene} names a scene of the checkout, and what counts of it."""
+
+    words: list
+    numberOf: object = ofRun
+    #: of a study: its number of rows, and the options and the varied property of its scene
+    study: tuple = ()
+
+
+def scene(name, *options, numberOf=ofRun):
+    return Row([*YADE, "{" + name + "}", *options], numberOf)
+
+
+def study(name, runs, options, varied):
+    return Row([*PYTHON, "-m", "{study}", "--jobs", "1"], ofRun, (name, runs, options, varied))
+
+
+SHAKEN = [*YADE, BENCHMARK + "shaken_facade.py", "--lean", "--preset", "fast", "--seconds", "4"]
 ROWS = {
-    "fast": ([*YADE, COMP4, "--preset", "fast"], ofRun),
-    "lean": ([*YADE, COMP4, "--preset", "fast", "--lean"], ofRun),
-    "rigid": ([*ONE, COMP4, "--until", "3", "--rate", "20", "--lean"], ofSteps),
-    "deformable": ([*ONE, COMP4, "--preset", "accurate", "--until", "1", "--lean"], ofSteps),
-    "plain": (PLAIN, ofPlain),
-    "plain plane": ([*PLAIN, "--plane", "--until", "1"], ofPlain),
-    "accurate": ([*YADE, COMP4, "--preset", "accurate"], ofRun),
-    "facade": ([*ONE, "scripts/gallery/facade.py", "--lean"], ofSteps),
-    "house": ([*ONE, "scripts/gallery/house.py", "--lean"], ofSteps),
-    "panel": ([*ONE, "scripts/gallery/panel.py", "--lean"], ofSteps),
-    "gable": ([*ONE, "scripts/gallery/falling_gable.py", "--lean"], ofSteps),
-    "shaken": (
-        [
-            *ONE,
-            "validation/benchmark/shaken_facade.py",
-            "--lean",
-            "--preset",
-            "fast",
-            "--seconds",
-            "2",
-        ],
-        ofSteps,
+    "20 rows of arch": study("arch", 20, {}, "dry.friction"),
+    "20 rows of parapet": study("parapet", 20, {}, "dry.friction"),
+    "8 rows of COMP-4 fast": study("wall_comp4", 8, {"preset": "fast"}, "bed.friction"),
+    "falling_gable": scene("falling_gable", "--lean"),
+    "spreading_arch": scene("spreading_arch", "--lean"),
+    "house": scene("house", "--lean"),
+    "tower on soil": Row([*YADE, ROOT + "/" + BENCHMARK + "tower_on_soil.py", "--lean"]),
+    "drawn_wall": scene("drawn_wall", "--lean", numberOf=ofSteps),
+    "storeys": scene("storeys", "--lean", numberOf=ofSteps),
+    "panel": scene("panel", "--lean", numberOf=ofSteps),
+    "accurate COMP-4": scene("wall_comp4", "--preset", "accurate"),
+    "facade": scene("facade", "--lean"),
+    "shaken facade, 0.2 g": Row([*SHAKEN, "--peak", "0.2"]),
+    "shaken facade, 0.9 g": Row([*SHAKEN, "--peak", "0.9"]),
+    "shaken wall of 100 bricks": Row([*YADE, ROOT + "/" + BENCHMARK + "shaken_wall.py", "--lean"]),
+    "fast COMP-4": scene("wall_comp4", "--preset", "fast"),
+    "rigid": scene("wall_comp4", "--until", "3", "--rate", "20", "--lean", numberOf=ofEachStep),
+    "deformable": scene(
+        "wall_comp4", *"--preset accurate --until 1 --lean".split(), numberOf=ofEachStep
     ),
-    "wide": ([*YADE, "validation/benchmark/benchmark.py", "--wide", "224", "224"], ofWide),
-    "import": ([*PYTHON, "-c", IMPORT], ofImport),
+    "1,224 half bricks": Row(
+        [*YADE, BENCHMARK + "benchmark.py", "--wide", "34", "36"], ofEachSubcontact
+    ),
+    "16,000 half bricks": Row(
+        [*YADE, BENCHMARK + "benchmark.py", "--wide", "126", "127"], ofEachSubcontact
+    ),
 }
 
 
-def measured(row, site):
+def pathOf(name, tree):
+    """The file of a scene in a checkout."""
+    for folder in ("scripts", os.path.join("scripts", "gallery")):
+        path = os.path.join(tree, folder, name + ".py")
+        if os.path.exists(path):
+            return path
+    raise FileNotFoundError(f"{tree} has no scene {name}")
+
+
+def wordsOf(row, tree, folder):
+    """The command of a row in a checkout.
+
+    :param folder: where its results go
+    """
+    package = "masonry_study"
+    if not os.path.isdir(os.path.join(tree, "scripts", package)):
+        package = "masonry.study"  # before the packages were parted
+    words = [
+        pathOf(word[1:-1], tree) if word[0] == "{" and word != "{study}" else word
+        for word in row.words
+    ]
+    words = [package if word == "{study}" else word for word in words]
+    if row.study:
+        name, runs, options, varied = row.study
+        file = os.path.join(folder, "rows.py")
+        with open(file, "w") as out:
+            out.write(
+                ROWS_OF_A_STUDY.format(
+                    package=package,
+                    scene=pathOf(name, tree),
+                    options=options,
+                    runs=runs,
+                    name=varied,
+                )
+            )
+        words.append(file)
+    return words if "--wide" in words else [*words, "--out", os.path.join(folder, "results")]
+
+
+def measured(row, tree):
     """The number of a row and its unit; None if the run fails.
 
-    :param site: folder with the package, or None: the one that is installed
+    :param tree: a checkout, or None: this one with the installed package
     """
-    command, numberOf = ROWS[row]
-    paths = {"PYTHONPATH": os.path.abspath(site)} if site else {}
+    paths = {"PYTHONPATH": os.path.join(os.path.abspath(tree), "scripts")} if tree else {}
+    tree = os.path.abspath(tree or ROOT)
     with tempfile.TemporaryDirectory() as folder:
-        words = [*command, "--out", folder] if numberOf in (ofSteps, ofRun) else command
-        began = time.monotonic()
+        words = wordsOf(row, tree, folder)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         run = subprocess.run(
-            words, cwd=ROOT, env={**os.environ, **paths}, capture_output=True, text=True
+            words, cwd=tree, env={**os.environ, **paths}, capture_output=True, text=True
         )
-        seconds = time.monotonic() - began
-        try:
-            return numberOf(folder, seconds, run.stdout) if run.returncode == 0 else None
-        except (OSError, TypeError, ValueError):
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        if run.returncode:
             return None
+        return row.numberOf(os.path.join(folder, "results"), seconds, run.stdout)
 
 
 def main():
     p = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    p.add_argument("site", nargs="*", help="folder with a package, one for each build")
+    p.add_argument("tree", nargs="*", help="checkout with the plugin beside its sources")
     p.add_argument("--rows", nargs="+", choices=list(ROWS), default=list(ROWS))
     p.add_argument("--repeat", type=int, default=2)
     args = p.parse_args()
-    builds = args.site or [None]
-    print("|".join(["", " run ", *(f" {b or 'installed'} " for b in builds), ""]))
-    print("|".join(["", *["---"] * (1 + len(builds)), ""]))
+    builds = args.tree or [None]
+    heads = [builds[0] or "installed", *(f"over {one}" for one in builds[1:])]
+    print("| run |", " | ".join(heads), "|")
+    print("|---" * (1 + len(builds)) + "|")
     for row in args.rows:
-        runs = [[measured(row, site) for site in builds] for _ in range(args.repeat)]
+        runs = [[measured(ROWS[row], tree) for tree in builds] for _ in range(args.repeat)]
         best = [min(filter(None, one), default=None) for one in zip(*runs)]
-        cells = [f" {one[0]:.4g} {one[1]} " if one else " - " for one in best]
-        print("|".join(["", f" {row} ", *cells, ""]), flush=True)
+        first = best[0]
+        cells = [f"{first[0]:.4g} {first[1]}" if first else "-"]
+        cells += [f"{first[0] / one[0]:.2f}" if first and one else "-" for one in best[1:]]
+        print(f"| {row} |", " | ".join(cells), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace masonry {
 
@@ -178,19 +179,35 @@ bool JointShapes::isIntact(int j) const {
 
 namespace {
 
-// Marks the points that are corners of the convex hull of all: those from which all others lie within less than half a
-// turn.
+// Marks the points that are corners of the convex hull of all.
 void markCorners(const std::vector<std::array<double, 2>>& points, std::vector<bool>& corner) {
-    const double half = M_PI * (1 + 1e-6);
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        std::vector<double> angles;
-        for (const auto& other : points)
-            if (other != points[p]) angles.push_back(std::atan2(other[1] - points[p][1], other[0] - points[p][0]));
-        std::sort(angles.begin(), angles.end());
-        double widest = angles.empty() ? 2 * M_PI : angles.front() + 2 * M_PI - angles.back();
-        for (std::size_t n = 1; n < angles.size(); ++n)
-            widest = std::max(widest, angles[n] - angles[n - 1]);
-        if (widest > half) corner[p] = true;
+    constexpr double straight = 3e-6; // sine of the least turn at a corner
+    double size = 0;
+    for (const auto& point : points)
+        size = std::max({size, std::abs(point[0]), std::abs(point[1])});
+    const auto rounded = [&](double place) { return std::round(place / (1e-9 * size)); };
+    const auto before = [&](int a, int b) {
+        const double x[] = {rounded(points[a][0]), rounded(points[b][0])};
+        return x[0] < x[1] || (x[0] == x[1] && points[a][1] < points[b][1]);
+    };
+    std::vector<int> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), before);
+    for (int half = 0; half < 2; ++half) {
+        std::vector<int> chain; // of one side of the hull, counter-clockwise
+        const auto turnsLeft = [&](int next) {
+            const auto &a = points[chain[chain.size() - 2]], &b = points[chain.back()], &c = points[next];
+            const double u[] = {b[0] - a[0], b[1] - a[1]}, v[] = {c[0] - b[0], c[1] - b[1]};
+            return u[0] * v[1] - u[1] * v[0] > straight * std::hypot(u[0], u[1]) * std::hypot(v[0], v[1]);
+        };
+        for (int next : order) {
+            while (chain.size() > 1 && !turnsLeft(next))
+                chain.pop_back();
+            chain.push_back(next);
+        }
+        for (int p : chain)
+            corner[p] = true;
+        std::reverse(order.begin(), order.end());
     }
 }
 

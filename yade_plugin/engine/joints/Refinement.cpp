@@ -61,44 +61,64 @@ struct Share {
 };
 std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
     const int count = int(points.size());
-    double smallest = HUGE_VAL, nearest = HUGE_VAL;
-    int closest = 0;
+    std::vector<double> distances; // squares [m²]
+    for (const auto& point : points)
+        distances.push_back((place - point.offset).squaredNorm());
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    const int closest = int(std::min_element(distances.begin(), distances.end()) - distances.begin());
+    double smallest = HUGE_VAL;
     std::vector<std::vector<Share>> found;
-    const auto take = [&](double size, std::vector<Share> shares) {
+    // Whether a stretch or triangle around the place can be small enough that has a side of this length or a corner at
+    // this distance of the place: the squares of a triangle's sides add up to 1.5 times the square of either.
+    const bool row = isRow(points);
+    const auto fits = [&](double squared) { return (row ? 1 : 1.5) * squared <= smallest * (1 + 1e-6); };
+    const auto take = [&](double size, std::initializer_list<Share> shares) {
         for (const auto& share : shares)
             if (share.weight < -1e-6) return;
         if (size > smallest * (1 + 1e-6)) return;
         if (size < smallest * (1 - 1e-6)) found.clear();
         smallest = std::min(size, smallest);
-        found.push_back(std::move(shares));
+        found.emplace_back(shares);
     };
     const auto between = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
-    const bool row = isRow(points);
-    for (int a = 0; a < count; ++a) {
-        const Vector3r there = place - points[a].offset;
-        if (there.norm() < nearest) closest = a;
-        nearest = std::min(nearest, there.norm());
-        for (int b = a + 1; b < count; ++b) {
-            const Vector3r ab = between(a, b);
-            if (row) {
-                const double t = there.dot(ab) / ab.squaredNorm();
-                take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
-                continue;
-            }
-            for (int c = b + 1; c < count; ++c) {
-                const Vector3r ac = between(a, c);
-                const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
-                if (std::abs(area) <= 1e-6 * size) continue;
-                const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
-                take(size + between(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+    const auto search = [&] {
+        found.clear();
+        for (int i = 0; i < count; ++i) {
+            const int a = order[i];
+            if (!fits(distances[a])) continue;
+            const Vector3r there = place - points[a].offset;
+            for (int j = i + 1; j < count; ++j) {
+                const int b = order[j];
+                const Vector3r ab = between(a, b);
+                if (!fits(distances[b]) || !fits(ab.squaredNorm())) continue;
+                if (row) {
+                    const double t = there.dot(ab) / ab.squaredNorm();
+                    take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
+                    continue;
+                }
+                for (int k = j + 1; k < count; ++k) {
+                    const int c = order[k];
+                    const Vector3r ac = between(a, c);
+                    if (!fits(distances[c]) || !fits(ac.squaredNorm())) continue;
+                    const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
+                    if (std::abs(area) <= 1e-6 * size) continue;
+                    const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
+                    take(size + between(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+                }
             }
         }
-    }
+    };
+    // First from the nearest points on, which finds how small; then in their own order, by which weights are summed.
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return distances[a] < distances[b]; });
+    search();
+    std::iota(order.begin(), order.end(), 0);
+    search();
     std::vector<double> weights(count, 0.0);
     for (const auto& shares : found)
         for (const auto& [point, weight] : shares)
             weights[point] += weight / found.size();
-    if (nearest * nearest <= close * smallest) {
+    if (distances[closest] <= close * smallest) {
         weights.assign(count, 0.0);
         weights[closest] = 1;
     }
