@@ -10,11 +10,12 @@ makes it anew.
 
 NAME may be a folder, as trade, or one of its results, as wall_comp4/rigid.
 
-A result is stale if what decides its numbers has changed since it was made: the numbers of
-tests/references, which a change of the law, the scheme or a default changes and a change of the
-structure does not; the usual options; the materials; or its own program, scene and case, without
-their comments. made.json records this fingerprint, the commit, the date and the time of each. A
-result that was made before made.json has the date and the commit of its files and counts as stale.
+A result is stale if what decides its numbers has changed since it was made: a number of
+tests/references by more than TOLERANCE, which a change of the law, the scheme or a default moves
+and a change of the structure does not; the usual options; the materials; or its own program, scene
+and case, without their comments. made.json records the fingerprint of these, the commit, the date
+and the time of each; git has the references of that commit. A result without a record has the date
+and the commit of its files.
 
 What is stopped goes on with the same command. Runs that an older state of the code has left in
 results/ are removed before a result is made, since studies take what is there. Text that quotes
@@ -45,6 +46,12 @@ README = os.path.join(HERE, "README.md")
 MARKS = "<!-- remake.py: begin -->", "<!-- remake.py: end -->"
 PYTHON = sys.executable
 YADE = ["yade", "-n", "-x"]
+
+#: Change of a number of a stored reference, over the largest of its quantity at an instant, from
+#: which on a result is stale.
+TOLERANCE = 1e-3
+#: Quantities of a stored reference that are no answer.
+NO_ANSWERS = {"fingerprint", "error of the balance [-]"}
 
 #: What decides the numbers of every result, beside its own sources and the usual options; patterns
 #: below the root of the repository.
@@ -495,29 +502,36 @@ def everything():
 # -- how old a result is ---------------------------------------------------------------------------
 
 
-def fingerprint(result, every=None):
-    """What decides the numbers of a result, as a text: of its sources, and of the results that it
-    needs."""
-    digest = hashlib.sha256(json.dumps([USUAL, PRESETS], sort_keys=True).encode())
-    for pattern in dict.fromkeys([*COMMON, *result.sources]):
-        for path in sorted(glob.glob(os.path.join(ROOT, pattern))):
-            digest.update(os.path.relpath(path, ROOT).encode())
-            digest.update(_numbers(path))
+def sourcesOf(result, every):
+    """Paths below ROOT of what decides the numbers of a result and of those that it needs."""
+    found = {}
+    for pattern in [*COMMON, *result.sources]:
+        paths = sorted(glob.glob(os.path.join(ROOT, pattern)))
+        found.update(dict.fromkeys(os.path.relpath(path, ROOT) for path in paths))
     for name in result.needs:
-        digest.update(fingerprint((every or everything())[name], every).encode())
+        found.update(dict.fromkeys(sourcesOf(every[name], every)))
+    return list(found)
+
+
+def isReference(path):
+    return path.startswith(os.path.join("tests", "references", ""))
+
+
+def fingerprint(result, every=None):
+    """What decides the numbers of a result beside the references, as a text."""
+    digest = hashlib.sha256(json.dumps([USUAL, PRESETS], sort_keys=True).encode())
+    for path in sourcesOf(result, every or everything()):
+        if not isReference(path):
+            digest.update(path.encode())
+            digest.update(_meaning(os.path.join(ROOT, path)))
     return digest.hexdigest()[:16]
 
 
-def _numbers(path):
-    """What a file says: of a program without comments and docstrings, of a stored reference without
-    who made it."""
+def _meaning(path):
+    """What a file says, a program without comments and docstrings."""
     with open(path, "rb") as file:
         text = file.read()
-    if os.sep + "references" + os.sep in path:
-        content = json.loads(text)
-        content.pop("made by", None)
-        text = json.dumps(content, sort_keys=True).encode()
-    elif path.endswith(".py"):
+    if path.endswith(".py"):
         tree = ast.parse(text)
         for node in ast.walk(tree):
             body = getattr(node, "body", None)
@@ -525,6 +539,37 @@ def _numbers(path):
                 node.body = [one for one in body if not _isText(one)]
         text = ast.dump(tree).encode()
     return text
+
+
+def movedReferences(result, commit, every):
+    """Those of the references of a result that have moved since a commit by more than TOLERANCE."""
+    moved = []
+    for path in filter(isReference, sourcesOf(result, every)):
+        with open(os.path.join(ROOT, path)) as file:
+            now = _instants(file.read())
+        if not _agree(_instants(git("show", f"{commit.rstrip('+')}:{path}")), now):
+            moved.append(path)
+    return moved
+
+
+def _instants(text):
+    """Numbers of a stored reference by instant and quantity; none of an empty text."""
+    found = {}
+    for instant, quantities in json.loads(text or "{}").get("instants", {}).items():
+        for quantity, values in quantities.items():
+            if quantity not in NO_ANSWERS:
+                found[instant, quantity] = [float.fromhex(value) for value in values.split()]
+    return found
+
+
+def _agree(old, new):
+    if {key: len(values) for key, values in old.items()} != {k: len(v) for k, v in new.items()}:
+        return False
+    return all(
+        abs(a - b) <= TOLERANCE * max(map(abs, values))
+        for key, values in old.items()
+        for a, b in zip(values, new[key])
+    )
 
 
 def _isText(statement):
@@ -561,7 +606,8 @@ def stateOf(result, made, every):
     if not known:
         return ("unrecorded", *commitOf(result))
     same = known["fingerprint"] == fingerprint(result, every)
-    return "fresh" if same else "stale", known["commit"], known["date"]
+    fresh = same and not movedReferences(result, known["commit"], every)
+    return "fresh" if fresh else "stale", known["commit"], known["date"]
 
 
 # -- making ----------------------------------------------------------------------------------------

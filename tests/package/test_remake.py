@@ -38,12 +38,18 @@ def test_results_come_after_those_that_they_need():
     assert "wall_comp4/rigid" in EVERY["wall_comp6/rigid"].needs
 
 
+def writeReference(path, force, build="a"):
+    numbers = {"fingerprint": build, "force on the base [N]": f"{force.hex()} {0.5.hex()}"}
+    content = {"made by": build, "instants": {"pressed": numbers}}
+    (path / "tests/references/rigid.json").write_text(json.dumps(content))
+
+
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
     for folder in ("validation/one", "tests/references", "results/one", "results/other"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")
-    (tmp_path / "tests/references/rigid.json").write_text('{"made by": "a", "x": 1}')
+    writeReference(tmp_path, force=1000.0)
     sources = "validation/one/*.py", "tests/references/rigid*.json"
     programs = ((sys.executable, "validation/one/run.py"),)
     result = remake.Result("one", programs, sources=sources, results=("one",))
@@ -53,7 +59,9 @@ def tree(tmp_path, monkeypatch):
         monkeypatch.setattr(remake, name, str(tmp_path / path))
     monkeypatch.setattr(remake, "everything", lambda: {"one": result})
     (tmp_path / "validation/README.md").write_text("\n".join(["a", *remake.MARKS, "b"]))
-    return tmp_path, result
+    for words in ("init -q", "add -A", "-c user.name=a -c user.email=a commit -qm a"):
+        assert ran(["git", "-C", str(tmp_path), *words.split()]).returncode == 0
+    return tmp_path, result, remake.git("rev-parse", "HEAD")
 
 
 def state(result):
@@ -61,39 +69,43 @@ def state(result):
 
 
 def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_then(tree):
-    path, result = tree
+    path, result, commit = tree
     assert state(result) == "unrecorded"
-    remake.record(result, remake.fingerprint(result), 60, "abc")
+    remake.record(result, remake.fingerprint(result), 60, commit)
     assert state(result) == "fresh"
-    program, reference = path / "validation/one/run.py", path / "tests/references/rigid.json"
+    program = path / "validation/one/run.py"
     program.write_text('"""What it is."""\n# why\n' + program.read_text())
-    reference.write_text('{"made by": "b", "x": 1}')
-    assert state(result) == "fresh"  # a comment, and the name of a build
-    reference.write_text('{"made by": "b", "x": 2}')
+    writeReference(path, force=1000.9, build="b")
+    assert state(result) == "fresh"  # a comment, the name of a build, and 0.09 % of the force
+    writeReference(path, force=1001.1)
     assert state(result) == "stale"
-    remake.record(result, remake.fingerprint(result), 60, "abc")
+    writeReference(path, force=1000.0)
     program.write_text(program.read_text() + "print(1)\n")
+    assert state(result) == "stale"
+    remake.record(result, remake.fingerprint(result), 60, commit)
+    assert state(result) == "fresh"
+    remake.record(result, remake.fingerprint(result), 60, "0000000")  # a commit that git has not
     assert state(result) == "stale"
 
 
 def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
-    path, result = tree
+    path, result, commit = tree
     folder = path / "results/one"
     program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
     (path / "validation/one/run.py").write_text(program + "assert os.path.exists('fine')")
     (folder / "old").write_text("of an older state")
-    assert remake.main(["--built", "abc"]) == 1
+    assert remake.main(["--built", commit]) == 1
     assert os.listdir(folder) == ["new"]  # what was older is gone
     assert os.path.exists(path / "results/other")
     (folder / "kept").write_text("of the attempt that was stopped")
     (path / "fine").write_text("")
-    assert remake.main(["--built", "abc"]) == 0
+    assert remake.main(["--built", commit]) == 0
     assert sorted(os.listdir(folder)) == ["kept", "new"]
     made = json.loads((path / "validation/made.json").read_text())
-    assert made["one"]["commit"] == "abc"
-    assert "| fresh | abc |" in (path / "validation/README.md").read_text()
+    assert made["one"]["commit"] == commit
+    assert f"| fresh | {commit} |" in (path / "validation/README.md").read_text()
     capfd.readouterr()
-    assert remake.main(["--built", "abc"]) == 0
+    assert remake.main(["--built", commit]) == 0
     assert capfd.readouterr().out == ""  # nothing is stale
-    assert remake.main(["--built", "abc", "--force", "one"]) == 0
+    assert remake.main(["--built", commit, "--force", "one"]) == 0
     assert os.listdir(folder) == ["new"]
