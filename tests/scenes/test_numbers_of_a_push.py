@@ -319,3 +319,21 @@ def test_a_move_says_what_inertia_takes_of_its_reactions(tmp_path, rate, much):
     *_, moved = (a["value"] for a in scene.answers if a["name"] == "displacement_of_right")
     assert moved == approx(0.5, abs=0.001)  # in this stage
     scene.finish()
+
+
+def test_head_joints_without_bond_turn_with_their_beds(tmp_path):
+    """They open, and are no joints about which the wall turns: continuous beds hold no less."""
+    scene = lean(
+        tmp_path,
+        bricks.Wall(1.1, 0.405),
+        materials.calciumSilicate(),
+        *"--set head.tensileStrength=0 --set head.cohesion=0".split(),
+        rate=50,
+    )
+    scene.platen("bottom")
+    top = scene.platen("top", drive="x")
+    scene.press(top, 0.5e6)
+    scene.settle()
+    scene.push(top, 1.5)
+    assert scene.model.scheme.joints.overestimate == 0
+    scene.finish()

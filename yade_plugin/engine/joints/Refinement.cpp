@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace masonry {
 
@@ -329,6 +330,7 @@ PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& k
                                         int j) {
     if (!limit.dry() && !hasCracked(kind, j)) return {};
     const auto& shapes = *kind.shapes;
+    if (bridged_.count(shapes.joints[j].corners.get())) return {};
     const auto& columns = *kind.states->columns.unsynchronised();
     const double k = columns.stiffness().normal;
     const auto stressAt = [&](int p) {
@@ -445,7 +447,36 @@ void Refinement::readParts(const SceneContents& store) {
                 sizes_[part].extend(corner);
         }
     widths_.clear();
+    findBridged(store);
     stiffnessRevision_ = store.stiffnessRevision();
+}
+
+// Finds dry joints both blocks of which a third one, or both halves of a brick, hold by their bond, as head joints
+// without bond in a wall with bonded beds: these turn with their beds alone.
+void Refinement::findBridged(const SceneContents& store) {
+    const auto isDry = [](const JointView& joint) {
+        const auto& p = joint.phys->group->columns.unsynchronised()->law().properties();
+        return !(p.tensileStrength > 0 || p.cohesion > 0);
+    };
+    std::map<int, std::set<int>> bonded; // blocks at each block
+    for (const auto& joint : store.joints) {
+        const auto& sides = joint.geom->reference().sides;
+        if (isDry(joint)) continue;
+        bonded[sides[0].body].insert(sides[1].body);
+        bonded[sides[1].body].insert(sides[0].body);
+    }
+    bridged_.clear();
+    for (const auto& joint : store.joints) {
+        const auto& r = joint.geom->reference();
+        if (!isDry(joint)) continue;
+        const auto &one = bonded[r.sides[0].body], &other = bonded[r.sides[1].body];
+        const auto holdsOther = [&](int body) {
+            const auto& next = bonded[body];
+            return other.count(body) > 0 ||
+                   std::any_of(next.begin(), next.end(), [&](int half) { return other.count(half) > 0; });
+        };
+        if (std::any_of(one.begin(), one.end(), holdsOther)) bridged_.insert(r.corners.get());
+    }
 }
 
 // Whether a point of a joint has reached this part of the limit, or was beyond it already.

@@ -7,6 +7,7 @@
 #include "SceneContents.hpp"
 #include <Eigen/Geometry>
 #include <map>
+#include <set>
 
 namespace masonry {
 
@@ -80,6 +81,7 @@ private:
     PointCounts countsIfOpening(SceneContents&, const JointKind&, const Limit&, double part, int joint);
     PointCounts countsIfDue(SceneContents&, const JointKind&, const Limit&, double part, int joint);
     void readParts(const SceneContents&);
+    void findBridged(const SceneContents&);
     double extentOf(const JointReference&, int axis) const;
     double widthOf(const SceneContents&, const JointReference&, int axis);
 
@@ -101,7 +103,8 @@ private:
     std::vector<int> partOf_;                                 // part of each body, -1 if it is held
     std::map<int, Eigen::AlignedBox3d> sizes_;                // around the joints of each part
     std::map<std::pair<const Polygon*, int>, double> widths_; // see widthOf(), by the joint and the axis
-    long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these three were read
+    std::set<const Polygon*> bridged_;                        // see findBridged(), by the joint
+    long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these four were read
 };
 
 } // namespace masonry
