@@ -15,6 +15,9 @@ from ..errors import checkPlane
 from ..terminal import say
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern
+#: Uplift over which friction of a testing machine grows to its whole [m]. A platen on a pier that
+#: rocks rises by a fifth to a half of its drift, so a reversal is over within 0.1 to 0.2 mm of this.
+GUIDE_TRAVEL = 2e-5
 DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
 
 
@@ -68,7 +71,7 @@ class Loading:
         targets = [target for target in self.description.targets.values() if target.loaded]
         for target in targets:
             if target.pressed is not None:
-                yield MasonryLoad(label=f"{target.name}_press", **_on(target))
+                yield MasonryLoad(label=f"{target.name}_press", **_on(target), **_machineOf(target))
             if target.force is not None:
                 yield MasonryLoad(label=f"{target.name}_force", **_on(target))
         for n, (brick, _, point) in enumerate(self.description.winds):
@@ -113,6 +116,19 @@ class Loading:
         for label, force in self._grown.items():
             self.loads[label].force = force * smooth(x)
         self.structure.connectors.grow(smooth(x))
+
+    def engage(self):
+        """Let the machines that press follow their platens from now on, if presses have grown."""
+        for target in self.description.targets.values():
+            if target.isInMachine and self.grown:
+                self.loads[f"{target.name}_press"].engaged = True
+
+    def disengage(self, target):
+        """Let the machine that presses a target keep its present load."""
+        load = self.loads.get(f"{target.name}_press")
+        if load and load.engaged:
+            load.force += reactionOf(load)
+            load.engaged, load.reaction = False, 0
 
     def deadLoads(self):
         """Pairs of MasonryLoad and its force when it has grown [N]."""
@@ -275,7 +291,7 @@ class Loading:
             return Vector3.Zero
         beside = self.supports.applied()
         for load in self.loads.values():
-            if load.driven and load is not self.push:
+            if (load.driven or load.engaged) and load is not self.push:
                 beside += reactionOf(load)
         return beside
 
@@ -312,6 +328,20 @@ class Loading:
 def _on(target):
     """Attributes of a load on a target. A brick keeps its numerical damping until it is driven."""
     return dict(body=target.body, point=target.point, damped=target.brick is not None)
+
+
+def _machineOf(target):
+    """Attributes of a press that follows its platen."""
+    if not target.isInMachine:
+        return {}
+    (left, front, _), (right, back, _) = target.box
+    load = target.pressed * (right - left) * (back - front)
+    return dict(
+        direction=-Vector3.UnitZ,
+        stiffness=target.stiffness,
+        friction=target.friction,
+        guideStiffness=target.friction * load / GUIDE_TRAVEL,
+    )
 
 
 # -- drives of pushes ------------------------------------------------------------------------------
@@ -434,12 +464,12 @@ def isAlong(load, axis, body):
 
 
 def reactionOf(load):
-    """Force of the drive of a MasonryLoad [N]."""
+    """Force of the drive of a MasonryLoad, or of a machine beside its force [N]."""
     return load.reaction * load.direction.normalized()
 
 
 def forceOn(load, body):
-    """Force of a MasonryLoad and its drive on a body [N]."""
+    """Force of a MasonryLoad and its drive or machine on a body [N]."""
     if body not in bodiesOf(load):
         return Vector3.Zero
     share = load.shares[bodiesOf(load).index(body)] if load.others else 1.0
