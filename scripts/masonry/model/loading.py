@@ -16,7 +16,7 @@ from ..terminal import say
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern
 #: Uplift over which friction of a testing machine grows to its whole [m]. A platen on a pier that
-#: rocks rises by a fifth to a half of its drift, so a reversal is over within 0.1 to 0.2 mm of this.
+#: rocks rises by a fifth to a half of its drift, so a reversal takes 0.1 to 0.2 mm of that.
 GUIDE_TRAVEL = 2e-5
 DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
 
@@ -116,19 +116,6 @@ class Loading:
         for label, force in self._grown.items():
             self.loads[label].force = force * smooth(x)
         self.structure.connectors.grow(smooth(x))
-
-    def engage(self):
-        """Let the machines that press follow their platens from now on, if presses have grown."""
-        for target in self.description.targets.values():
-            if target.isInMachine and self.grown:
-                self.loads[f"{target.name}_press"].engaged = True
-
-    def disengage(self, target):
-        """Let the machine that presses a target keep its present load."""
-        load = self.loads.get(f"{target.name}_press")
-        if load and load.engaged:
-            load.force += reactionOf(load)
-            load.engaged, load.reaction = False, 0
 
     def deadLoads(self):
         """Pairs of MasonryLoad and its force when it has grown [N]."""

@@ -39,7 +39,7 @@ ENERGIES = {
 #: Energies of ties, springs and testing machines, and of contacts, in scenes that have some.
 OF_CONNECTORS = {
     "elastic_connectors": ("elastic energy in ties, springs and testing machines", "stored"),
-    "dissipated_connectors": ("energy that ties and friction of testing machines dissipated", "spent"),
+    "dissipated_connectors": ("energy that ties and testing machines dissipated", "spent"),
 }
 OF_CONTACTS = {
     "handing": ("energy that the change from joints to contacts gave", "in"),

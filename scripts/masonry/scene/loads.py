@@ -77,6 +77,8 @@ def press(
         :meth:`settle` or a later :meth:`press`; 0 is a dead load. Limit analysis has the load
         without them
     """
+    if not stress > 0 and friction + stiffness > 0:
+        raise ValueError(f"press: stress {stress:g} Pa of a testing machine must be above 0")
     doubtPress(stress, "press")
     if platen.pressed is not None:
         raise ValueError(

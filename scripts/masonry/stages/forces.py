@@ -205,7 +205,7 @@ def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | 
     :param stress: mean vertical stress on the bricks, with the weight of the platen [Pa]
     """
     made = _pressOn(scene, platen, stress, "press")
-    scene.model.loading.disengage(platen)
+    scene.model.disengage(platen)
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
     return _putOn(scene, "press", made, longest)
 
