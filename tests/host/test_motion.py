@@ -118,6 +118,59 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
         assert O.forces.f(1, True)[2] == approx(-weight, abs=1e-7)
 
 
+#: A machine that loads with 1 kN: friction [-], stiffness [N/m], where the loaded point moves [mm];
+#: what it adds there [N], and what its friction has dissipated [J], which slips after 0.02 mm.
+MACHINES = {
+    "a dead load": (0.0, 0.0, [2, -1], 0, 0),
+    "follows uplift": (0.0, 2e5, [2, 1.5], 300, 0),
+    "is kept back as it rises": (0.1, 0.0, [2], 100, 0.1 * (2 - 0.02)),
+    "is kept back as it sinks": (0.1, 0.0, [2, 1], -100, 0.1 * (3 - 0.06)),
+    "sticks": (0.1, 0.0, [2, 1.99], 50, 0.1 * (2 - 0.02)),
+    "both": (0.1, 2e5, [2, 1], 200 - 120, None),
+    "never pulls": (0.1, 2e5, [2, -6], -1000, None),
+}
+
+
+@mark.parametrize("case", MACHINES)
+def test_the_load_of_a_testing_machine(case):
+    friction, stiffness, path, added, lost = MACHINES[case]
+    stack(count=2)
+    upper = O.bodies[1].state
+    upper.blockedDOFs = "xyzXYZ"
+    load = insert(
+        MasonryLoad(
+            body=1,
+            point=upper.pos,
+            force=(0, 0, -1e3),
+            direction=(0, 0, -1),
+            friction=friction,
+            stiffness=stiffness,
+            guideStiffness=friction * 1e3 / 2e-5,
+            engaged=friction + stiffness > 0,
+        )
+    )
+    O.dt = 1e-4
+    for a, b in zip([0, *path], path):
+        upper.vel = Vector3(0, 0, (b - a) / 400 / O.dt / 1e3)
+        run(400)
+    upper.vel = Vector3.Zero
+    run(2)
+    assert load.reaction == approx(added, abs=1e-6)
+    assert load.dissipated == approx(load.dissipated if lost is None else lost, abs=1e-9)
+    assert load.elastic >= 0
+
+
+def test_a_testing_machine_that_does_not_fit_is_refused():
+    for wrong, of in (
+        ("friction needs a guideStiffness", dict(friction=0.1)),
+        ("no drive", dict(stiffness=1e5, driven=True)),
+        ("has stiffness or friction", dict(engaged=True)),
+        ("friction 1 must be .* below 1", dict(friction=1, guideStiffness=1e5)),
+    ):
+        with raises(ValueError, match=wrong):
+            MasonryLoad(**of)
+
+
 def test_a_load_that_is_dead_does_no_work():
     stack(count=2, damping=0.1)
     where = O.bodies[1].state.pos

@@ -93,6 +93,17 @@ scene.settle()
 scene.push(top, 0.1)
 scene.finish()
 """,
+    "machine": """
+scene = Scene("s", bricks.stack(1, (0.5, 0.3, 1.0)), materials.dry(), rate=20)
+scene.platen("bottom")
+top = scene.platen("top", rotation="free")
+scene.press(top, 0.2e6, friction=0.05, stiffness=2e6)
+scene.settle()
+scene.cycle(top, [1.0])
+scene.press(top, 0.3e6)
+scene.push(top, 1.0)
+scene.finish()
+""",
     "patterns": """
 scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate(), rate=100)
 scene.platen("bottom")
@@ -140,6 +151,7 @@ def resumed(script, whole):
         ("beside", (0.2, 0.5, 0.8, 0.95)),
         ("soft", (0.01, 0.13, 0.75)),
         ("line", (0.3, 0.8, 0.9, 0.95)),
+        ("machine", (0.02, 0.3, 0.6, 0.8, 0.95)),
         ("fall", (0.5, 0.95)),
         ("patterns", (0.3, 0.5, 0.9)),
     ],

@@ -98,6 +98,7 @@ def notGrown(scene):
     [
         (lambda s: s.platen("bottom", rotation="free"), "the bottom is fixed"),
         (lambda s: s.press(s.platen("bottom"), 1), "'base' must be a platen .* moves"),
+        (lambda s: s.press(s.platen("top"), 0, friction=0.1), "machine must be above 0"),
         (lambda s: s.hold(99), "where 99: there are 3 bricks"),
         (lambda s: s.hold((9, 9, 9)), "no brick is near"),
         (lambda s: [s.hold(n, name="a") for n in (0, 1)], "two targets of the name"),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryEnergy.hpp"
+#include "engine/bodies/Load.hpp"
 #include "engine/contacts/Contacts.hpp"
+#include <algorithm>
 
 MASONRY_DEFINE(MasonryEnergy)
 
@@ -28,7 +30,8 @@ py::dict MasonryEnergy::balance() {
     all["dissipated_tension"] = lost[0];
     all["dissipated_shear"] = lost[1];
     all["dissipated_compression"] = lost[2];
-    if (!scene->allConnectors.empty()) {
+    const auto hasMachine = [](const Load* load) { return !load->machineStiffness().isZero(0); };
+    if (!scene->allConnectors.empty() || std::any_of(scene->allLoads.begin(), scene->allLoads.end(), hasMachine)) {
         all["elastic_connectors"] = energies.inConnectors;
         all["dissipated_connectors"] = energies.lostInConnectors;
     }

@@ -17,7 +17,8 @@ public:
         "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
         "that the velocity is exact, unless damped keeps it; two driven loads on one block are exact only if the block "
         "cannot rotate. A drive can move several blocks with forces in a fixed proportion; the velocity is then the "
-        "mean of their points by the shares of the force.";
+        "mean of their points by the shares of the force. Undriven, it can be the load of a testing machine, which "
+        "follows how far the point moves against the direction by a stiffness, and which friction keeps back.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryLoad;
@@ -43,8 +44,20 @@ public:
         visit("acceleration", &L::acceleration, number("m/s²", "Growth of the velocity in the ramp"));
         visit("reaction", &L::reaction,
               number("N",
-                     "Force that the drive applied along the direction in the last step; whoever turns the direction "
-                     "turns it, too"));
+                     "Force that the drive, or a testing machine beside the force, applied along the direction in the "
+                     "last step; whoever turns the direction turns it, too"));
+        visit("stiffness", &L::stiffness,
+              number("N/m", "With which the load of a testing machine follows the point against the direction")
+                  .atLeast(0));
+        visit("friction", &L::friction,
+              number("", "Share of this load up to which friction of the machine keeps it back").atLeast(0).below(1));
+        visit("guideStiffness", &L::guideStiffness,
+              number("N/m", "Of the guides of the machine until their friction slips").atLeast(0));
+        visit("engaged", &L::engaged, described("Whether stiffness and friction act; they begin without force"));
+        visit("uplift", &L::uplift, number("m", "Of the point against the direction since then"), ReadOnly);
+        visit("slip", &L::slip, number("m", "How much of the uplift the friction has slipped"), ReadOnly);
+        visit("elastic", &L::stored, number("J", "Elastic energy of machine and guides"), ReadOnly);
+        visit("dissipated", &L::dissipated, number("J", "Energy that their friction has dissipated so far"), ReadOnly);
         visit("work", &L::work,
               number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "
                           "energies of rigid bodies"),

@@ -15,6 +15,9 @@ from ..errors import checkPlane
 from ..terminal import say
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern
+#: Uplift over which friction of a testing machine grows to its whole [m]. A platen on a pier that
+#: rocks rises by a fifth to a half of its drift, so a reversal takes 0.1 to 0.2 mm of that.
+GUIDE_TRAVEL = 2e-5
 DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
 
 
@@ -68,7 +71,7 @@ class Loading:
         targets = [target for target in self.description.targets.values() if target.loaded]
         for target in targets:
             if target.pressed is not None:
-                yield MasonryLoad(label=f"{target.name}_press", **_on(target))
+                yield MasonryLoad(label=f"{target.name}_press", **_on(target), **_machineOf(target))
             if target.force is not None:
                 yield MasonryLoad(label=f"{target.name}_force", **_on(target))
         for n, (brick, _, point) in enumerate(self.description.winds):
@@ -275,7 +278,7 @@ class Loading:
             return Vector3.Zero
         beside = self.supports.applied()
         for load in self.loads.values():
-            if load.driven and load is not self.push:
+            if (load.driven or load.engaged) and load is not self.push:
                 beside += reactionOf(load)
         return beside
 
@@ -312,6 +315,20 @@ class Loading:
 def _on(target):
     """Attributes of a load on a target. A brick keeps its numerical damping until it is driven."""
     return dict(body=target.body, point=target.point, damped=target.brick is not None)
+
+
+def _machineOf(target):
+    """Attributes of a press that follows its platen."""
+    if not target.isInMachine:
+        return {}
+    (left, front, _), (right, back, _) = target.box
+    load = target.pressed * (right - left) * (back - front)
+    return dict(
+        direction=-Vector3.UnitZ,
+        stiffness=target.stiffness,
+        friction=target.friction,
+        guideStiffness=target.friction * load / GUIDE_TRAVEL,
+    )
 
 
 # -- drives of pushes ------------------------------------------------------------------------------
@@ -434,12 +451,12 @@ def isAlong(load, axis, body):
 
 
 def reactionOf(load):
-    """Force of the drive of a MasonryLoad [N]."""
+    """Force of the drive of a MasonryLoad, or of a machine beside its force [N]."""
     return load.reaction * load.direction.normalized()
 
 
 def forceOn(load, body):
-    """Force of a MasonryLoad and its drive on a body [N]."""
+    """Force of a MasonryLoad and its drive or machine on a body [N]."""
     if body not in bodiesOf(load):
         return Vector3.Zero
     share = load.shares[bodiesOf(load).index(body)] if load.others else 1.0

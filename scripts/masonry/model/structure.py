@@ -12,7 +12,7 @@ from .bodies import placeBlock
 from .connecting import makeJoints
 from .connectors import Connectors
 from .engines import engine, engines
-from .loading import Loading
+from .loading import Loading, reactionOf
 from .motion import Motion
 from .scheme import Scheme
 from .restraints import Supports
@@ -213,6 +213,19 @@ class Structure:
             if drive.others:  # forces in a pattern are loads, and end
                 drive.driven = False
         self.contacts.dampsLoose = False
+
+    def engage(self):
+        """Let the machines that press follow their platens from now on, if presses have grown."""
+        for target in self.description.targets.values():
+            if target.isInMachine and self.loading.grown:
+                self.loading.loads[f"{target.name}_press"].engaged = True
+
+    def disengage(self, target):
+        """Let the machine that presses a target keep its present load."""
+        load = self.loading.loads.get(f"{target.name}_press")
+        if load and load.engaged:
+            load.force += reactionOf(load)
+            load.engaged, load.reaction = False, 0
 
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 

@@ -97,7 +97,7 @@ CRACKS = Column(
     lambda r: r.structure.widest,
 )
 
-#: The energy balance of every run, and of ties and springs.
+#: The energy balance of every run, and of ties, springs and testing machines.
 BALANCE = [
     *_energies(ENERGIES),
     Column(

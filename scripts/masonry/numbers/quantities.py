@@ -36,10 +36,10 @@ ENERGIES = {
     "dissipated_shear": ("energy that joints dissipated in shear", "spent"),
     "dissipated_compression": ("energy that joints dissipated in compression", "spent"),
 }
-#: Energies of ties and springs, and of contacts, in scenes that have some.
+#: Energies of ties, springs and testing machines, and of contacts, in scenes that have some.
 OF_CONNECTORS = {
-    "elastic_connectors": ("elastic energy in ties and springs", "stored"),
-    "dissipated_connectors": ("energy that ties dissipated", "spent"),
+    "elastic_connectors": ("elastic energy in ties, springs and testing machines", "stored"),
+    "dissipated_connectors": ("energy that ties and testing machines dissipated", "spent"),
 }
 OF_CONTACTS = {
     "handing": ("energy that the change from joints to contacts gave", "in"),

@@ -151,7 +151,8 @@ class Description:
             found += joint.columns(self.plane)
         for one in (*self.sections, *self.connectors, *self.overlays):
             found += one.columns(self.plane)
-        balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)
+        machines = any(target.isInMachine for target in self.targets.values())
+        balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors or machines)
         balance += columns.CONTACTS * bool(self.contact)
         found += [columns.CRACKS, *self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)

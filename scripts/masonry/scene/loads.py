@@ -11,6 +11,7 @@ from ..errors import checkPlane
 from ..terminal import say
 from .pressures import LEAST, FaceForce, facesAgainst, pressures
 from .targets import Loaded, MovingPlaten, Part
+from .ties import MAX_STIFFNESS
 from .script import describes
 
 #: Larger ones would crush or throw over any masonry.
@@ -55,13 +56,29 @@ def windForces(
 
 @describes
 @validated
-def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None:
+def press(
+    description: Any,
+    platen: MovingPlaten,
+    stress: Stress,
+    riding: bool = True,
+    friction: Annotated[float, number("", 0, 1, below=True)] = 0.0,
+    stiffness: Annotated[float, number("N/m", 0, MAX_STIFFNESS)] = 0.0,
+) -> None:
     """Press a platen, once, on the bricks below it. The load grows in :meth:`settle`, and stays.
 
     :param stress: mean vertical stress on the bricks, with the weight of the platen [Pa]
     :param riding: whether the load moves with the platen; else it keeps its line in space, as over
         rollers
+    :param friction: of jack and guides of a testing machine, over its load (that on the bricks
+        without the weight of the platen) [-]. When the platen rises, up to this share is added to
+        the load, when it sinks, taken off. It is reached after 0.02 mm (:data:`GUIDE_TRAVEL`)
+    :param stiffness: with which the load of a testing machine follows the uplift of the platen
+        where it acts [N/m]; the load is never below 0. Both begin at rest under the whole load, in
+        :meth:`settle` or a later :meth:`press`; 0 is a dead load. Limit analysis has the load
+        without them
     """
+    if not stress > 0 and friction + stiffness > 0:
+        raise ValueError(f"press: stress {stress:g} Pa of a testing machine must be above 0")
     doubtPress(stress, "press")
     if platen.pressed is not None:
         raise ValueError(
@@ -69,6 +86,7 @@ def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool =
             " stress once, or press it again after the first stage"
         )
     platen.pressed, platen.riding = float(stress), riding
+    platen.friction, platen.stiffness = friction, stiffness
 
 
 @describes

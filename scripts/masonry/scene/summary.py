@@ -69,7 +69,7 @@ def held(description):
         where = where if target.joined else "the ground"
         what = [f"{where}, {_freedom(target.freedom or '')}"]
         if target.pressed:
-            what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")
+            what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa" + _machine(target))
         if target.force:
             what.append("dead load ({:.6g}, {:.6g}, {:.6g}) N".format(*target.force))
         if target.drives:
@@ -88,6 +88,13 @@ def held(description):
     recorded = [*description.joints, *description.drifts, *sections]
     if recorded:
         yield "recorded, too", ", ".join(one.name for one in recorded)
+
+
+def _machine(target):
+    friction, stiffness = f"{target.friction:.4g} of friction", target.stiffness
+    follows = f"{1e-6 * stiffness:.4g} kN/mm of uplift"
+    found = [friction] * (target.friction > 0) + [follows] * (stiffness > 0)
+    return f", by a machine with {' and '.join(found)}" if found else ""
 
 
 def _freedom(freedom):

@@ -27,7 +27,14 @@ class Target:
     force: tuple | None = None  # [N] dead load
     pressed: float | None = None  # [Pa] on the bricks below
     riding: bool = True  # the load moves with the platen
+    friction: float = 0.0  # of the machine that presses, over its load [-]
+    stiffness: float = 0.0  # with which its load follows uplift [N/m]
     joined: bool = True  # a platen has joints with what it touches
+
+    @property
+    def isInMachine(self) -> bool:
+        """Whether the load that presses it follows its motion."""
+        return self.friction > 0 or self.stiffness > 0
 
     @property
     def parts(self) -> tuple[tuple[Any, Any, float]]:

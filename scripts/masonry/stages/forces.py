@@ -205,6 +205,7 @@ def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | 
     :param stress: mean vertical stress on the bricks, with the weight of the platen [Pa]
     """
     made = _pressOn(scene, platen, stress, "press")
+    scene.model.disengage(platen)
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
     return _putOn(scene, "press", made, longest)
 
@@ -258,6 +259,12 @@ def grow(
     :returns: as in :meth:`tilt`. ``scene.factor`` of one load alone is its amount: of a force in
         kN, of a stress in MPa, of an even pressure in kPa; otherwise it has no unit
     """
+    for target in scene.description.targets.values():
+        if target.isInMachine and (dead or isNumber(loads.get(target))):
+            raise ValueError(
+                f"grow: friction or stiffness of a testing machine follows a load that stays:"
+                f" press {target.name} again with another stress"
+            )
     made = [
         (_pressOn if isNumber(amount) else _forceOn)(scene, target, amount, "grow")
         for target, amount in loads.items()

@@ -209,6 +209,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
             " as moving"
         )
         ended = MOVING
+    model.engage()
     if record:
         running.record()
     running.flush()

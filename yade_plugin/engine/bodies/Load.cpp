@@ -17,6 +17,9 @@ std::vector<std::string> Load::problems() const {
         found.push_back("others, otherPoints and shares must have a number of each other body, and shares one of body");
     else if (count && !(std::abs(std::accumulate(shares.begin(), shares.end(), -1.0)) < 1e-9))
         found.push_back("shares must be 1 in sum");
+    if (machineStiffness().isZero(0) ? engaged : driven || count > 0)
+        found.push_back("a testing machine has stiffness or friction, no drive and no others");
+    if (friction > 0 && !(guideStiffness > 0)) found.push_back("friction needs a guideStiffness above 0");
     std::set<int> bodies;
     eachBody([&](int id) { bodies.insert(id); });
     if (bodies.size() != count + 1) found.push_back("body and others must be different bodies");
@@ -57,13 +60,40 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
         missing = missing - share * d.dot(v) - share * lever.dot(w);
         mobility += share * share * own;
     }
-    reaction = driven ? missing / (mobility * scene.dt) : 0;
+    if (engaged) {
+        const auto& state = *bodyAt(scene, body, ".body", ClassRole::Load).state;
+        reaction = followMachine(scene.dt * d.dot(state.vel + state.angVel.cross(parts_[0].arm)));
+    } else {
+        reaction = driven ? missing / (mobility * scene.dt) : 0;
+        uplift = slip = stored = 0;
+    }
     for (std::size_t n = 0; n < parts_.size(); ++n) {
         auto& [id, force, arm] = parts_[n];
-        if (driven) force += shareOf(n) * reaction * d;
+        if (driven || engaged) force += shareOf(n) * reaction * d;
         sums.forces[id] += force;
         sums.torques[id] += arm.cross(force);
     }
+}
+
+// With an uplift u, the machine loads with N = F + k u, not below 0, and friction keeps back G = kg (u - p), at most
+// its share of N: then the slip p grows. What the trapezoidal rule takes up and the springs do not store, friction has
+// dissipated.
+double Load::followMachine(double moved) {
+    uplift -= moved;
+    const double load = std::max(0.0, force.dot(direction.normalized()));
+    const double spring = std::max(stiffness * uplift, -load), most = friction * (load + spring);
+    const double kept = std::clamp(guideStiffness * (uplift - slip), -most, most);
+    if (friction > 0) slip = uplift - kept / guideStiffness;
+    const double inMachine = stiffness > 0 ? spring * (uplift - 0.5 * spring / stiffness) : 0;
+    const double inGuides = friction > 0 ? 0.5 * kept * kept / guideStiffness : 0;
+    dissipated += stored - inMachine - inGuides - 0.5 * (reaction + spring + kept) * moved;
+    stored = inMachine + inGuides;
+    return spring + kept;
+}
+
+Vector3r Load::machineStiffness() const {
+    const Vector3r d = direction.normalized().cwiseAbs();
+    return (stiffness + guideStiffness) * d.sum() * d;
 }
 
 Vector3r Load::displacementIn(const yade::Scene& scene) const {

@@ -40,9 +40,19 @@ public:
     double velocity = 0;     // of the point along `direction`, when `ramp` is over [m/s]
     int ramp = 0;            // steps until then, in each of which the velocity grows evenly
     double acceleration = 0; // in the ramp [m/s²]
-    double reaction = 0;     // force of the drive along `direction`, on all bodies [N]
+    double reaction = 0;     // force of the drive, or of a testing machine beside `force`, along `direction` [N]
     double work = 0;         // of force and drive so far [J]
     double pendingWork = 0;  // second half of the last step's work, which the next step adds [J]
+
+    // A testing machine, whose load follows how far the point moves against `direction` and is kept back by friction.
+    double stiffness = 0;      // with which the load follows [N/m]
+    double friction = 0;       // share of the load up to which friction keeps it back [-]
+    double guideStiffness = 0; // of the guides, until this friction slips [N/m]
+    bool engaged = false;      // whether both act; when they begin to, they have no force
+    double uplift = 0;         // of the point since then, against `direction` [m]
+    double slip = 0;           // how much of that the friction has slipped [m]
+    double stored = 0;         // elastic energy of machine and guides [J]
+    double dissipated = 0;     // by the friction so far [J]
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
@@ -50,6 +60,9 @@ public:
     void act(yade::Scene&, const Vector3r& gravity);
     // Displacement of the loaded point since the reference state [m].
     Vector3r displacementIn(const yade::Scene&) const;
+
+    // Stiffness of machine and guides along the global axes [N/m] for the time step: never too small.
+    Vector3r machineStiffness() const;
 
     // Calls a function with the id of each body that is loaded.
     template <class F> void eachBody(F&& act) const {
@@ -69,6 +82,9 @@ private:
         Vector3r force, arm; // force and drive on it [N], and from its centre to its point [m], in the present step
     };
     std::vector<Part> parts_;
+
+    // The force beside `force` after a step in which the point has moved so far along `direction` [N].
+    double followMachine(double moved);
 
     template <class F> double power(F&& motionOf) const {
         double sum = 0;

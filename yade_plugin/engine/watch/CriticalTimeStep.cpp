@@ -2,6 +2,7 @@
 #include "CriticalTimeStep.hpp"
 #include "engine/bodies/BodyCheck.hpp"
 #include "engine/bodies/BodyStep.hpp"
+#include "engine/bodies/Load.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "engine/contacts/Contacts.hpp"
 #include "engine/store/SceneStore.hpp"
@@ -46,7 +47,7 @@ public:
     std::pair<int, int> stiffest() const;
 
 private:
-    // A joint between rigid bodies, one subcontact of a joint with a deformable side, or a connector.
+    // A joint between rigid bodies, one subcontact of a joint with a deformable side, a connector or a testing machine.
     struct Part {
         std::vector<int> degrees; // the degrees of freedom on which it acts
         Eigen::MatrixXd stiffness;
@@ -72,7 +73,11 @@ private:
     void addBodies(const JointView&);
     void splitDamping(Damping);
     template <class F> void eachPartOf(const JointView&, F&& visit) const;
-    Part partOf(const Connectors&, int connector) const;
+    struct Spring { // between points of two bodies, in the reference state
+        int bodies[2];
+        Vector3r points[2], stiffness, rotationalStiffness;
+    };
+    Part partOf(const Spring&) const;
     template <class F> void eachPart(F&& visit) const;
     void assemble();
     void addBlocks();
@@ -98,6 +103,8 @@ Dynamics::Dynamics(SceneStore& store, Damping damping) : store_(store) {
         for (const auto* ids : {&connectors->bodies1, &connectors->bodies2})
             for (int id : *ids)
                 if (id != Connectors::ground) addBody(id, "a connector holds body");
+    for (const auto* load : store.loads)
+        if (!load->machineStiffness().isZero(0)) addBody(load->body, "a testing machine loads body");
     splitDamping(damping);
     assemble();
     addBlocks();
@@ -178,18 +185,16 @@ template <class F> void Dynamics::eachPartOf(const JointView& joint, F&& visit) 
     }
 }
 
-Dynamics::Part Dynamics::partOf(const Connectors& connectors, int connector) const {
-    const auto c = std::size_t(connector);
-    Part part{{}, {}, connectors.bodies1[c], connectors.bodies2[c]};
+Dynamics::Part Dynamics::partOf(const Spring& spring) const {
+    Part part{{}, {}, spring.bodies[0], spring.bodies[1]};
     std::vector<Vector3r> moved, turned; // derivatives of the relative motion of both ends
     for (int end = 0; end < 2; ++end) {
-        const int id = (end ? connectors.bodies2 : connectors.bodies1)[c];
+        const int id = spring.bodies[end];
         if (id == Connectors::ground) continue;
         const State& s = *bodyAt(store_.scene(), id, "a connector holds body").state;
         const int first = firstOfBody_.at(id);
         const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
-        const Vector3r point = (end ? connectors.points2 : connectors.points1)[c];
-        const Vector3r arm = s.ori * (s.refOri.conjugate() * (point - s.refPos));
+        const Vector3r arm = s.ori * (s.refOri.conjugate() * (spring.points[end] - s.refPos));
         const double sign = end ? 1 : -1;
         for (int d = 0; d < 6; ++d) {
             if (scale_[first + d] == 0) continue;
@@ -198,7 +203,7 @@ Dynamics::Part Dynamics::partOf(const Connectors& connectors, int connector) con
             turned.push_back(d < 3 ? Vector3r(Vector3r::Zero()) : Vector3r(sign * own.col(d - 3)));
         }
     }
-    const Vector3r k = connectors.stiffnessOf(connector), turning = connectors.rotationalStiffnessOf(connector);
+    const Vector3r &k = spring.stiffness, &turning = spring.rotationalStiffness;
     part.stiffness.setZero(moved.size(), moved.size());
     for (std::size_t i = 0; i < moved.size(); ++i)
         for (std::size_t j = 0; j < moved.size(); ++j)
@@ -219,7 +224,13 @@ template <class F> void Dynamics::eachPart(F&& visit) const {
         eachPartOf(joint, visitAll);
     for (const auto* connectors : store_.connectors)
         for (int c = 0; c < connectors->count(); ++c)
-            visitAll(partOf(*connectors, c));
+            visitAll(partOf({{connectors->bodies1[c], connectors->bodies2[c]},
+                             {connectors->points1[c], connectors->points2[c]},
+                             connectors->stiffnessOf(c),
+                             connectors->rotationalStiffnessOf(c)}));
+    for (const auto* load : store_.loads)
+        if (const Vector3r k = load->machineStiffness(); !k.isZero(0))
+            visitAll(partOf({{load->body, Connectors::ground}, {load->point, load->point}, k, Vector3r::Zero()}));
     if (!store_.zones) return;
     for (const auto& unit : store_.zones->units()) {
         const auto matrix = unit.elasticity->matrix();
@@ -371,7 +382,7 @@ std::pair<int, int> Dynamics::stiffest() const {
 struct KnownLimit {
     long revision = -1;
     double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
-    double connectors = 0; // sum of their stiffness
+    double connectors = 0; // sum of their stiffness, with that of testing machines
     double contacts = 0;   // bound of their eigenvalues [1/s²]
     double contactDamping = 0;
     double limit = 0; // [s]
@@ -397,6 +408,8 @@ double timeStepLimit(SceneStore& store, bool anew) {
     for (const auto* connectors : store.connectors)
         for (int c = 0; c < connectors->count(); ++c)
             stiffnessOfConnectors += connectors->stiffnessOf(c).sum() + connectors->rotationalStiffnessOf(c).sum();
+    for (const auto* load : store.loads)
+        stiffnessOfConnectors += load->machineStiffness().sum();
     double contacts = 0, contactDamping = 0;
     for (auto* one : store.contacts) {
         contacts += one->largestEigenvalue(store, anew);

@@ -30,11 +30,14 @@ double energyOfChanges(const SceneStore& store) {
     return all;
 }
 
-// Work of tightening, energy stored and energy dissipated in the ties and springs [J].
+// Work from outside, energy stored and energy dissipated in ties, springs and testing machines [J]. The work of a load
+// counts what its machine has taken, which came from outside.
 Vector3r energiesOfConnectors(const SceneStore& store) {
     Vector3r sums = Vector3r::Zero();
     for (const auto* connectors : store.allConnectors)
         sums += Vector3r(connectors->given, connectors->stored, connectors->dissipated);
+    for (const auto* load : store.allLoads)
+        sums += Vector3r(load->stored + load->dissipated, load->stored, load->dissipated);
     return sums;
 }
 

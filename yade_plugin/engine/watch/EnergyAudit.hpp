@@ -19,7 +19,7 @@ struct EngineEnergies {
     double drag = 0;             // taken by damping and impacts
     double inUnits = 0;          // elastic energy of deformable units
     double changes = 0;          // elastic energy that joints got when they were refined or became contacts
-    double inConnectors = 0;     // elastic energy of ties and springs
+    double inConnectors = 0;     // elastic energy of ties, springs and testing machines
     double lostInConnectors = 0; // dissipated by them
     // Elastic energy of contacts, and what their friction and damping took. Only a balance has them, because the
     // elastic energy takes longer to find than the forces.
