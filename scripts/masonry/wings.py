@@ -19,7 +19,7 @@ WINGS = {
 }
 
 PUBLIC = """
-    arguments auxiliary background bricks bricks.geometry errors folders materials
+    arguments auxiliary background bricks bricks.blocks bricks.geometry errors folders materials
     materials.codes materials.fields materials.settings memory model.arrays model.bodies
     model.load_names numbers.columns numbers.cracks numbers.curves numbers.drawing numbers.files
     numbers.frames numbers.loops numbers.quantities numbers.run_data packages run.batch

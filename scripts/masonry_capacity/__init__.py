@@ -24,6 +24,7 @@ and in Python, also where there is no YADE::
 - :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method
 - :mod:`masonry_capacity.domains`: the N-V domain of a pier, with runs as points
 - :mod:`masonry_capacity.piers`: piers of a run by EN 1998-3:2005 and NTC 2018
+- :mod:`masonry_capacity.panels`: panels out of their plane by AS 3700
 - :mod:`masonry_capacity.report`: the files of all that, which :mod:`masonry_capacity.figure` draws
 
 **What the equivalent system is.** The structure is one mass on a spring: it moves in one shape,
@@ -48,6 +49,7 @@ from .bilinear_curve import ofRun as bilinearOf
 from masonry.numbers.quantities import Number
 from .n2 import Demand, Equivalent, demand, equivalent, iterated, ofMasses, ofRun
 from .domains import BoundPoint, Domain, RunPoint, domain, runPoint
+from .panels import panelPressure
 from .report import assess, assessDomain
 from .spectra import Spectrum, elastic, readSpectrum
 
@@ -73,6 +75,7 @@ __all__ = [
     "iterated",
     "ofMasses",
     "ofRun",
+    "panelPressure",
     "pushover",
     "readSpectrum",
     "runPoint",

@@ -16,6 +16,8 @@ from masonry.stages.rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, Wa
 class Load:
     """A load of one number, its factor."""
 
+    towards = None
+
     def __init__(self, most=1.0):
         self.most, self.values = most, []
 
@@ -47,7 +49,9 @@ def standing(scaling=1.0, height=0.6):
     )
     motion = SimpleNamespace(checkFall=nothing, fastest=lambda far: 0.0)
     made = SimpleNamespace(
-        loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion
+        loading=SimpleNamespace(loadFactor=0.0),
+        supports=SimpleNamespace(arching=lambda across: (0.0, 0.0)),
+        motion=motion,
     )
     args = SimpleNamespace(density_scaling=scaling)
     return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)

@@ -30,11 +30,17 @@ class _Point:
         return state.pos + state.ori * self._own - state.refPos - self.arm
 
 
+def _reach(block, direction):
+    """How far the corners of a block lie along a direction [m]."""
+    return [direction.dot(Vector3(*p)) for p in block.corners]
+
+
 class Supports:
     """Platens, and bricks that are held, loaded or watched.
 
     - ``held``: targets with a held direction
     - ``freeMass``: of all other blocks [kg]
+    - ``unloaded``: what :meth:`alongWall` was before the present load
     """
 
     def __init__(self, structure):
@@ -142,6 +148,45 @@ class Supports:
         for load in self.structure.loading.loads.values():
             carried += reactionOf(load)
         return carried - self.structure.connectors.onGround()
+
+    def _endsOf(self, across):
+        """A horizontal unit vector at right angles to a direction, and the held bricks in the first
+        and the last quarter of the structure along it."""
+        along = Vector3(-across[1], across[0], 0).normalized()
+        held = [t for t in self.held if t.brick is not None]
+        if not held or not along.norm():
+            return along, ([], [])
+        places = [v for b in self.description.bricks for v in _reach(b, along)]
+        low, high = min(places), max(places)
+        off = lambda t: (along.dot(Vector3(*t.recorded)) - (low + high) / 2) / (high - low)
+        return along, [[t for t in held if side * off(t) > 0.25] for side in (-1, 1)]
+
+    def alongWall(self, across):
+        """Thrust of the ends of a wall against held bricks, at right angles to a load ``across``
+        it, and the force that all supports carry along that load [N]."""
+        along, ends = self._endsOf(across)
+        low, high = (sum(self.supportedBy(t).dot(along) for t in end) for end in ends)
+        return max(0.0, min(-low, high)), -self.carried().dot(across)
+
+    def arching(self, across):
+        """Thrust as in :meth:`alongWall` that came since ``unloaded`` [kN], and the share of the
+        load that it carries at most [-]: 8 N r/(F L), the thrust N times its rise r over the moment
+        of the load F on the clear span L. The rise is from the side in compression in the middle of
+        the span to the far side of the held bricks."""
+        thrust, load = (now - was for now, was in zip(self.alongWall(across), self.unloaded))
+        if thrust <= 0 or load <= 0:
+            return 0.0, 0.0
+        along, ends = self._endsOf(across)
+        bricks = self.description.bricks
+        low, high = ([bricks[t.brick] for t in end] for end in ends)
+        far = max(max(_reach(b, across)) for b in low + high)
+        low, high = min(max(_reach(b, along)) for b in low), max(
+            min(_reach(b, along)) for b in high
+        )
+        middle = [b for b in bricks if 2 * min(p := _reach(b, along)) <= low + high <= 2 * max(p)]
+        rise = far - min((min(_reach(b, across)) for b in middle), default=far)
+        share = 8 * thrust * rise / load / max(high - low, 1e-9)
+        return 1e-3 * thrust, min(1.0, max(0.0, share))
 
     def unrest(self):
         """Share of the loads, or of the horizontal ones if larger, that is missing at the supports,

@@ -100,6 +100,7 @@ def putOnAnswers(scene, rows):
     asked, unit = scene.running.memory.goal, scene.loadUnit
     end, load = Tried(asked, 1e3 * scene.model.loading.alongNow()), f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
+        end.arching = scene.model.supports.arching(scene.model.loading.direction)
         return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")
     why = f"the structure did not come to rest under {load}"
     return ends(scene, None, why, end, why)

@@ -52,6 +52,7 @@ KEPT_BYTES = 100e6
 #: fast, but have not moved so far.
 SURE = 0.25
 BOUND_SHARE = 0.95  # of an exact bound: when less is held, a note says so
+ARCHING = 0.05  # share of the load from which a note says that supports carry a thrust [-]
 SETTING_OFF = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
 
 
@@ -70,6 +71,8 @@ class Tried:
 
     factor: float = 0.0
     displacement: float = 0.0  # along the load [mm]
+    #: of a load that was held: :meth:`masonry.model.restraints.Supports.arching`
+    arching: Sequence[float] = (0.0, 0.0)
 
 
 @dataclass
@@ -117,6 +120,7 @@ class Growing(Timed):
     #: Of all loads that were held, growing: the factor, the displacement [mm], and the state at
     #: rest under it, as text.
     rests: Sequence[Any] = ()
+    arching: Sequence[Any] = ()  # of these loads: the factor, and as in Tried
     steady: float = -1.0  # the largest of them that was seen not to buckle
     failure: Failure | None = record(Failure)  # the smallest load that was not held
     #: Trials above a load that was not held first, but is held from the state at rest below it.
@@ -126,7 +130,11 @@ class Growing(Timed):
     @property
     def held(self):
         """The largest load that was held, or None."""
-        return Tried(*self.rests[-1][:2]) if self.rests else None
+        if not self.rests:
+            return None
+        factor, moved, _ = self.rests[-1]
+        found = (values for at, *values in reversed(self.arching) if at == factor)
+        return Tried(factor, moved, next(found, (0.0, 0.0)))
 
 
 def grow(scene, name, load, duration, within=WITHIN):
@@ -192,8 +200,11 @@ def follow(scene, name, load):
     that began; the run keeps this under a name."""
     target, origins = scene.description.followed(load.target), scene.running.state.origins
     origin = scene.model.loading.follow(target, load.towards, origins.get(name))
-    if target and name not in origins:
-        scene.running.state.origins = {**origins, name: origin}
+    supports, thrust = scene.model.supports, f"{name}: thrust"
+    if name not in origins:
+        before = [*supports.alongWall(load.towards)]
+        scene.running.state.origins = origins = {**origins, name: origin, thrust: before}
+    supports.unloaded = origins[thrust]
 
 
 def found(scene, rows):
@@ -234,6 +245,20 @@ def ends(scene, held, whyHeld, failure, whyFailed):
         if end and target:
             how = f"of {target.name} along the load since that began, {when}"
             yield Answer(f"displacement_{name}", "mm", end.displacement, how)
+    thrust, share = held.arching if held else (0.0, 0.0)
+    if share < ARCHING:
+        return
+    how = "reactions along the wall, which came with the load, of held bricks at its two ends"
+    yield Answer("thrust_held", "kN", thrust, f"{how}, at rest")
+    how = "thrust times its largest rise over the moment of the whole load on the span, 8 N r/(F L)"
+    yield Answer("arching_share_held", "-", share, how)
+    if not scene.bracketing:
+        say(
+            f"note: what is held along the wall at its ends carries a thrust of {thrust:.3g} kN:"
+            f" arching and clamping between abutments give up to {100 * share:.0f} % of the load"
+            ' that is held; hold(brick, axes="y") holds an edge of a wall along x out of its plane'
+            " alone"
+        )
 
 
 def _present():
@@ -498,6 +523,8 @@ class _Search:
             state = _present()
             most = max(LEAST_KEPT, int(KEPT_BYTES / len(state)))
             at.rests = [*at.rests, [*end, state]][-most:]
+            arching = self.model.supports.arching(self.load.towards)
+            at.arching = [*at.arching, [trial.factor, *arching]]
             at.climbs += bool(at.climbs)
             isRefuted = at.failure and trial.factor >= at.failure.factor
             if isRefuted:
@@ -507,7 +534,7 @@ class _Search:
             isRefuted = False
             if at.failure is None or trial.factor < at.failure.factor or trial.fromRest:
                 source = trial.source if trial.fromRest else -1.0
-                at.failure = Failure(*end, source, reason)
+                at.failure = Failure(*end, source=source, reason=reason)
             detail += f"not held ({reason})"
             detail += f", {at.held.factor:.4g} held" if at.held else ""
         self.running.show(1, lambda: detail, True)
