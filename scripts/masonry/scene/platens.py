@@ -44,8 +44,10 @@ def platen(
     drive: Annotated[Axes, axes("xyz", none=True)] = "",
     springs: Annotated[dict[str, float], stiffnesses] | None = None,
     uplift: bool = False,
+    weight: Annotated[float, number("N", 0, 1e12)] | None = None,
 ) -> Target:
-    """A stiff block over the whole lower or upper side of the structure, with ``support`` joints.
+    """A rigid block over the whole lower or upper side of the structure, with ``support`` joints,
+    which alone give way.
 
     The one at the bottom is fixed. The one at the top moves, and loads act on it.
 
@@ -69,11 +71,13 @@ def platen(
         or y it turns about its own middle. Its weight counts if it can move along z
     :param uplift: whether the soil carries no tension: ``z`` of ``springs`` is spread over the side
         of the platen, on which it also turns
+    :param weight: of the one at the top [N]; None: that of 1800 kg/m³, whose mass it has in any case.
+        The difference grows in :meth:`settle`, as a dead load
     """
     bottom, plane = where == "bottom", description.plane
     level = _levelOf(description, bottom, part)
     springs = {**(springs or {})}
-    problems = [*_problems(plane, bottom, rotation, guided, drive, springs)]
+    problems = [*_problems(plane, bottom, rotation, guided, drive, springs, weight)]
     if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
         problems.append(
             "uplift needs springs with z, from which X and Y follow, and which have neither"
@@ -104,6 +108,7 @@ def platen(
             freedom="".join(axis for axis in "xyzXYZ" if axis in held),
             loaded=not bottom,
             drives="".join(drive),
+            weight=weight,
         )
     )
     if uplift:
@@ -117,11 +122,11 @@ def platen(
     return target
 
 
-def _problems(plane, bottom, rotation, guided, drive, springs):
+def _problems(plane, bottom, rotation, guided, drive, springs, weight):
     if bottom and rotation == "free":
         yield "the one at the bottom is fixed and cannot turn"
-    for name, value in {"guided": guided, "drive": drive}.items():
-        if bottom and value:
+    for name, value in {"guided": guided, "drive": drive, "weight": weight}.items():
+        if bottom and value not in ("", None):
             yield f"{name} {value!r} is for the one at the top"
     if springs and not bottom:
         yield "springs are for the one at the bottom; spring() is for any"

@@ -26,6 +26,7 @@ class Target:
     body: int | None = None  # YADE's id, when the scene is built
     force: tuple | None = None  # [N] dead load
     pressed: float | None = None  # [Pa] on the bricks below
+    weight: float | None = None  # [N] of a platen; None: that of its mass
     riding: bool = True  # the load moves with the platen
     joined: bool = True  # a platen has joints with what it touches
 
