@@ -66,7 +66,7 @@ def held(description):
     """What is held, loaded and watched before the first stage: pairs of a name and a text."""
     for target in description.targets.values():
         where = "platen" if target.box else f"brick {target.brick}"
-        where = where if target.joined else "the ground"
+        where = where if target.joined else "a line of springs" if target.line else "the ground"
         what = [f"{where}, {_freedom(target.freedom or '')}"]
         if target.pressed:
             what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")

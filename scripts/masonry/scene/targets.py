@@ -29,6 +29,7 @@ class Target:
     weight: float | None = None  # [N] of a platen; None: that of its mass
     riding: bool = True  # the load moves with the platen
     joined: bool = True  # a platen has joints with what it touches
+    line: bool = False  # it is a bar from which springs hold bricks along a line
 
     @property
     def parts(self) -> tuple[tuple[Any, Any, float]]:
@@ -50,7 +51,7 @@ class Target:
             yield Column(f"{name}_{axis}", "mm", what, moved)
             if self.fixed or axis in (self.freedom or ""):
                 yield force(axis, name, lambda r: 1e-3 * r.forces[name])
-            if not self.joined:
+            if not (self.joined or self.line):
                 what = f"impulse so far of what strikes {name}, along {axis}"
                 of = lambda r, i=i: r.structure.contacts.impulse(self.body)[i]
                 yield Column(f"{name}_impulse_{axis}", "Ns", what, of)
