@@ -32,12 +32,12 @@ def test_a_pushed_block_turns_about_a_line_and_its_edges_carry_its_weight_and_it
         scene.hold((x, 0, 0), name, axes, to=(x, 0.2, 0))
     top = scene.handle((wide / 2, 0.1, high), "top")
     scene.settle()
-    scene.push(top, 0.01)
+    scene.push(top, 0.02, rate=0.5)
     curve = scene.curve()
     weight, pushed = 1e-3 * block.volume * 2600 * G, curve["top_shear_kN"][-1]
-    assert pushed > weight / 10
-    assert curve["left_force_z_kN"][-1] == approx(-weight / 2 + pushed * high / wide, rel=1e-3)
-    assert curve["right_force_x_kN"][-1] == approx(pushed, rel=1e-3)
+    assert pushed > weight / 5
+    assert curve["left_force_z_kN"][-1] == approx(-weight / 2 + pushed * high / wide, rel=5e-3)
+    assert curve["right_force_x_kN"][-1] == approx(pushed, rel=5e-3)
 
 
 def test_a_line_that_sinks_bends_a_beam_as_springs_of_its_joints_say(tmp_path):
