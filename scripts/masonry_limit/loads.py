@@ -18,7 +18,8 @@ def forces(model, assembly, pushed=None, pressed=None):
     for load in arrays.deadLoads(model):
         block, force = assembly.ids.index(load.body), load.force
         point = _placeOf(assembly, load.body, load.point)
-        if pressed and load.body == pressed[0].body:  # of all vertical loads on it the press counts
+        # of all vertical loads on it the press counts, with its weight
+        if pressed and load.body == pressed[0].body and not load.label.endswith(arrays.LIFT):
             isPress = load.label == f"{pressed[0].name}_press"
             down = 1e3 * pressed[1] - model.supports.weightOf(pressed[0])
             force = np.array([force[0], force[1], -down * isPress])

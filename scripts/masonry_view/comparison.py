@@ -111,7 +111,7 @@ def readRuns(
             x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
             labels = [_label(name, spec) for name in (x, y)]
         for name in (x, y):
-            if name in RATIOS:
+            if name in RATIOS and name not in data:
                 data[name] = [*ratio(name, RunData(readRun(directory), data.get), directory)]
             if name not in data:
                 raise Refused(

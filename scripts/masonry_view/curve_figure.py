@@ -168,6 +168,11 @@ def _curves(axes, spec, data, ideal=None):
         text = bound["text"], (0.01, bound["y"]), (0, 3)
         axes.annotate(*text, **place, fontsize=8, color="0.25")
     axes.set_ylabel(spec["y_label"])
+    if weight := spec.get("weight_kN"):
+        ratio = axes.secondary_yaxis(
+            "right", functions=(lambda v: v / weight, lambda v: v * weight)
+        )
+        ratio.set_ylabel("force over weight [-]")
     if len(spec["y"]) > 1 or looped or ideal:
         axes.legend(loc="lower right")
     axes.grid(alpha=0.3)

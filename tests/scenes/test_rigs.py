@@ -2,6 +2,8 @@
 """Piers as they are tested in rigs: what the top may do, and cycles of drift."""
 
 from hosted import *
+from masonry.numbers import drawing
+from masonry_view import curve_figure
 
 LENGTH, HEIGHT, THICKNESS, STRESS = 0.88, 0.972, 0.102, 0.4e6
 
@@ -187,3 +189,35 @@ def test_a_platen_is_not_held_along_an_axis_without_a_column_for_its_reaction(tm
     scene, top = pier(tmp_path)
     with raises(ValueError, match="no column for its reaction along x"), scene:
         scene.hold(top, "x")
+
+
+@mark.parametrize("pressed", [False, True])
+@mark.parametrize("weight", [0.0, 500.0])
+def test_a_platen_weighs_what_it_is_said_to(tmp_path, weight, pressed):
+    """With a press the stress counts, which has its weight."""
+    blocks = bricks.stack(3, (0.4, 0.2, 0.2))
+    scene = standing(tmp_path, blocks, materials.dry(friction=0.7))
+    top = scene.platen("top", weight=weight)
+    if pressed:
+        scene.press(top, 1e4)
+    scene.settle()
+    carried = 1e4 * 0.4 * 0.2 if pressed else weight
+    expected = 2600 * G * blocks.volume + carried
+    assert scene.curve()["base_force_z_kN"][-1] == approx(-1e-3 * expected, rel=1e-3)
+
+
+def test_a_push_is_shown_over_its_drift_and_its_force_over_the_weight(tmp_path):
+    scene, top = pier(tmp_path, rotation="held")
+    scene.args.ratios = True
+    scene.push(top, 1)
+    scene.finish()
+    run, curve = readRun(tmp_path), arrays(tmp_path)
+    expected = 0.1 * curve["masonry_displacement_mm"] / HEIGHT
+    assert curve["drift_percent"] == approx(expected, rel=1e-6, abs=1e-9)
+    figure, (at, peak) = run["figure"], (run["figure"]["marks"][0][k] for k in "xy")
+    assert figure["x"]["column"] == "drift_percent" and 0 < at <= expected.max()
+    assert figure["weight_kN"] == approx(PRESSED + 1.8 * G * LENGTH * THICKNESS * HEIGHT, rel=0.02)
+    with drawing.style():
+        upper, _ = curve_figure.figureOf(run, readCurve(tmp_path), tmp_path).axes
+        (right,) = upper.child_axes
+    assert right.get_ylim()[1] == approx(upper.get_ylim()[1] / figure["weight_kN"])

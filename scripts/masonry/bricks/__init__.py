@@ -9,7 +9,7 @@ to face. These functions make one, and raise ValueError with all problems at onc
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
 - :class:`House`: storeys of four walls with floors and ring beams, from :class:`Storey`;
 - :func:`StoneWall`: squared or irregular stones, whose interlocking :func:`leastTrace` measures;
-- :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
+- :func:`Arch`, :func:`BarrelVault`, :func:`CrossVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces;
 - :func:`stack` and :func:`block`: boxes;
 - :func:`fromFile`: one block for each convex solid of a file; :func:`readCompas`: what a file of
@@ -44,7 +44,7 @@ from .houses import House, Storey
 from .openings import Lintel, Opening
 from .stones.outlines import fromOutlines
 from .stones.stone_wall import StoneWall, leastTrace
-from .vaults import Arch, BarrelVault, Dome
+from .vaults import Arch, BarrelVault, CrossVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
 
 __all__ = [
@@ -54,6 +54,7 @@ __all__ = [
     "Block",
     "Bricks",
     "Corner",
+    "CrossVault",
     "Dome",
     "Floor",
     "House",

@@ -10,6 +10,8 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Callable, Iterable, Iterator, get_args
 
+import numpy as np
+
 from ..arguments import (
     Direction,
     Numbers,
@@ -266,6 +268,29 @@ class Bricks:
         if not all(a <= b for a, b in zip(low, high)):
             refuse("within", [f"low corner {low} m must lie below high corner {high} m"])
         return self.where(lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high)))
+
+    @validated
+    def alongLine(self, begin: Point, end: Point) -> list[tuple[int, Any, float]]:
+        """The blocks that have a part of a line in them or on them: triples of the number of a
+        block, both ends of its part [m], and its least thickness [m].
+
+        :param begin: of the line [m], as ``end``
+        """
+        solids, found = self._convex("alongLine"), []
+        begin, way = np.array(begin), np.subtract(end, begin)
+        for n, thickness in enumerate(solids.thicknesses()):
+            group, row = solids.of(n)
+            normals, width = group.normals[row], COINCIDENT * solids.diagonal[n]
+            room, speed = group.offsets[row] + width - normals @ begin, normals @ way
+            with np.errstate(divide="ignore", invalid="ignore"):
+                at = room / speed
+            flat = abs(speed) < 1e-9 * np.linalg.norm(way)
+            low = at[(speed < 0) & ~flat].max(initial=0.0)
+            high = at[(speed > 0) & ~flat].min(initial=1.0)
+            if (room[flat] >= 0).all() and (high - low) * np.linalg.norm(way) > 10 * width:
+                ends = tuple(tuple(map(float, begin + t * way)) for t in (low, high))
+                found.append((n, ends, float(thickness)))
+        return found
 
     def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""

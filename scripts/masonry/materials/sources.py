@@ -58,7 +58,8 @@ def dry(
     poisson: Poisson | None = None,
 ) -> Masonry:
     """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without
-    dilatancy. A scene says what is assumed.
+    dilatancy. Pieces of one stone hold together, by elastic joints as stiff. A scene says what is
+    assumed.
 
     :param friction: [-]; default 0.7, usual for rough stone
     :param normalStiffness: of the joints [Pa/m], default 5e9; ``shearStiffness`` [Pa/m]: default
@@ -79,6 +80,7 @@ def dry(
         joint = MasonryJoint(name=name, **stiffness, **slipping(found["friction"]))
         said = {n: why for n, why in sources.items() if n not in ofStone}
         joints[name] = state(joint, **said)
+    joints["crack"] = MasonryJoint(name="crack", elastic=True, **stiffness)
     unit = MasonryMat(label="stone", **{n: found[n] for n in ofStone})
     said = {n: why for n, why in sources.items() if n in ofStone}
     return Masonry(state(unit, **said), joints)

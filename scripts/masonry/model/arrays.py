@@ -11,7 +11,7 @@ from yade import O
 from ..errors import Refused
 from ..numbers.cracks import CRACK_SURFACE
 from .bodies import placeOf
-from .loading import bodiesOf
+from .loading import LIFT, bodiesOf
 
 #: Blocks that have moved by less, over the size of a typical block, are taken where they stood when
 #: the joints were made [-]. A factor changes by as much; without it Clp takes ten times as long.

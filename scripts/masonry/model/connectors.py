@@ -29,6 +29,12 @@ class Connectors:
             for number, one in enumerate(records):
                 one.engine, one.number = self.engines[kind], number
 
+    def attach(self):
+        """Find the bodies of second ends, of which some are placed last."""
+        for kind, made in self.engines.items():
+            records = self.description.connectorsOf(kind)
+            made.bodies2 = [one.ends[1].bodyIn(self.ids) for one in records]
+
     def grow(self, share):
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)

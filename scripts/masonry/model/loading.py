@@ -18,6 +18,7 @@ PATTERN = "_drive"  # label of the drive of a push in a pattern
 #: Uplift over which friction of a testing machine grows to its whole [m]. A platen on a pier that
 #: rocks rises by a fifth to a half of its drift, so a reversal takes 0.1 to 0.2 mm of that.
 GUIDE_TRAVEL = 2e-5
+LIFT = "_lift"  # end of the label of what makes a platen lighter or heavier than its mass
 DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
 
 
@@ -74,6 +75,9 @@ class Loading:
                 yield MasonryLoad(label=f"{target.name}_press", **_on(target), **_machineOf(target))
             if target.force is not None:
                 yield MasonryLoad(label=f"{target.name}_force", **_on(target))
+            if target.weight is not None:
+                middle = [(a + b) / 2 for a, b in zip(*target.box)]
+                yield MasonryLoad(label=target.name + LIFT, **{**_on(target), "point": middle})
         for n, (brick, _, point) in enumerate(self.description.winds):
             on = dict(body=self.ids[brick], point=point)
             yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
@@ -93,6 +97,8 @@ class Loading:
             if target.force is not None:
                 force = self._grown[f"{target.name}_force"] = Vector3(*target.force)
                 self._warnHeld(target, force, "load")
+            if target.weight is not None:
+                self._grown[target.name + LIFT] = self.supports.liftOf(target)
             if target.pressed is not None:
                 self._warnHeld(target, Vector3.UnitZ, "press")
                 label, own = f"{target.name}_press", self.supports.weightOf(target)
@@ -241,6 +247,19 @@ class Loading:
         """Displacement of the bricks at the followed platen along the load since it began [m], or
         0."""
         return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
+
+    def drift(self):
+        """:meth:`masonryAlong` over :meth:`heights` [-], 0 where these are none."""
+        height = self.followed and self.heights(self.followed, self.direction)[1]
+        return self.masonryAlong() / height if height else 0.0
+
+    def heights(self, target, direction):
+        """Heights of the recorded point of a target, and of its bricks, above the lowest brick [m];
+        None of one that is not above it, or if the direction is not horizontal."""
+        found = target.recorded[2], self.supports.driftHeight(target)
+        sways = abs(direction[2]) < 1e-9
+        above = [z - self.description.low[2] for z in found]
+        return [h if sways and h > 0 else None for h in above]
 
     def alongNow(self):
         """Displacement of the followed point along the load since it began [m]."""

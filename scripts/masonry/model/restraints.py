@@ -285,4 +285,10 @@ class Supports:
 
     def weightOf(self, target):
         """Weight of the body of a target [N]."""
-        return O.bodies[target.body].state.mass * self.structure.gravity
+        own = O.bodies[target.body].state.mass * self.structure.gravity
+        return own if target.weight is None else target.weight
+
+    def liftOf(self, target):
+        """What carries a platen of another weight than that of its mass [N]."""
+        own = O.bodies[target.body].state.mass * self.structure.gravity
+        return (own - self.weightOf(target)) * Vector3.UnitZ

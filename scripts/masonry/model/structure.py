@@ -4,6 +4,7 @@
 from yade import O, Vector3
 from yade.wrapper import MasonryContacts, MasonryZones
 
+from .._masonry import connected
 from ..errors import Collapsed, Refused
 from ..terminal import say
 from ..bricks import boxCorners
@@ -69,6 +70,8 @@ class Structure:
         for target in self.description.targets.values():
             if not target.joined:  # placed later: no joints are made to the blocks it touches
                 self._addPlaten(target, loadingBlock)
+        self.connectors.attach()
+        connected()  # also what needs no joint
         self.scheme.begin()
         self._joinRecords()
         self.supports = Supports(self)
@@ -95,7 +98,7 @@ class Structure:
                 target.body = self.ids[target.brick]
                 if target.fixed:
                     O.bodies[target.body].state.blockedDOFs = target.freedom
-        if not any(target.fixed and target.joined for target in targets):
+        if not any(target.fixed and (target.joined or target.line) for target in targets):
             raise Refused("nothing is held: a scene needs a platen at the bottom, or hold()")
 
     def _addPlaten(self, target, material):

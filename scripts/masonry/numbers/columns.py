@@ -170,7 +170,14 @@ OF_PLATEN = [
         "displacement of the bricks at the pushed or watched platen along the push or load since"
         " that began; elsewhere of that point",
         lambda r: 1e3 * r.structure.loading.masonryAlong(),
-    )
+    ),
+    Column(
+        "drift",
+        "percent",
+        "this displacement over the height of these bricks' side, or of that point, above the"
+        " lowest brick; 0 unless the push or load is horizontal",
+        lambda r: 100 * r.structure.loading.drift(),
+    ),
 ]
 #: Of a push that follows a history.
 HISTORY = [

@@ -16,6 +16,7 @@ LOST = 0.05  # of the peak: a smaller loss may be the scatter by single bricks a
 FALL = 0.8  # of the peak: the force at the ultimate displacement of a wall
 MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
 MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
+DRIFT = "drift_percent"  # this over their height
 
 
 class RunData:

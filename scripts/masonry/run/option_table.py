@@ -216,6 +216,10 @@ _ROWS = (
     Option("vtk_every", millimetres, 1.0, "MM", harmless=True, free=True, ofStudy=False).means(
         "displacement between ParaView frames [mm]; with --history the path between them"
     ),
+    Option("ratios", flag, harmless=True).means(
+        "let curve.png and the report show a push over its drift [%%], with the force over the"
+        " vertical force at the base, as the push begins, on the right"
+    ),
     Option("quick", flag).means(
         "a tenth of every displacement, time and load that grows, and wide brackets, to see whether"
         " the scene works"

@@ -12,7 +12,7 @@ from ..errors import Refused, refuse
 from ..bricks import Block, Bricks
 from .platens import Point
 from .targets import Part, Target, brick, isOwn
-from .ties import MAX_STIFFNESS, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
+from .ties import BUNDLES, MAX_STIFFNESS, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .script import describes
 
 
@@ -143,9 +143,6 @@ def spring(
     return _take(description, "spring", made, problems)
 
 
-#: Gauss points along the edge of a joint: two bundles of fibres there have the force and the moment
-#: of a layer whose strain is linear.
-BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
 #: Corners so near to a face lie on it, over the largest extent of the structure [-].
 NEAR = 1e-6
 

@@ -101,7 +101,7 @@ class Description:
 
     def ground(self):
         """The target on which blocks fall in a scene whose collapse is followed, or None."""
-        return next((t for t in self.targets.values() if not t.joined), None)
+        return next((t for t in self.targets.values() if not (t.joined or t.line)), None)
 
     def followed(self, loaded=None):
         """The target whose displacement is drawn under a load that grows, or None: the first that
@@ -134,6 +134,8 @@ class Description:
         for name, target in self.targets.items():
             if target is one:
                 self.targets[name] = other
+        for end in (end for connector in self.connectors for end in connector.ends):
+            end.target = other if end.target is one else end.target
         for records in (self.joints, self.sections, self.connectors):
             records[:] = [other if record is one else record for record in records]
 

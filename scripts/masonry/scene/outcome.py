@@ -18,7 +18,7 @@ from ..memory import withoutCollector
 from ..memory import FULL
 from ..numbers import cracks, curves, quantities
 from ..numbers.frames import asFrame
-from ..numbers.run_data import RunData
+from ..numbers.run_data import DRIFT, MOVED, RunData
 from ..run import accuracy
 from ..run.option_table import UNITS
 from . import history, summary
@@ -199,16 +199,15 @@ class ResultSummary:
         """Entries from which the numbers of a push are found."""
         model = self.model
         period, weight, grown = self._freeVibration()
-        control, sways = model.loading.control, abs(model.loading.push.direction[2]) < 1e-9
-        heights = control.recorded[2], model.supports.driftHeight(control)
-        recorded, drift = (z - self.description.low[2] for z in heights)
+        loading = model.loading
+        recorded, drift = loading.heights(loading.control, loading.push.direction)
         past = self.pushed.history
         return {
             "first_period_s": period / self.args.density_scaling**0.5 or None,
             "base_weight": weight or curves.SHEAR,
             "velocity_grown_at_s": grown,
-            "recorded_height_m": recorded if sways and recorded > 0 else None,
-            "drift_height_m": drift if sways and drift > 0 else None,
+            "recorded_height_m": recorded,
+            "drift_height_m": drift,
             **({"history": history.describe(past)} if past else {}),
         }
 
@@ -336,20 +335,24 @@ def _ofPush(outcome):
     control, data = outcome.model.loading.control, outcome.data
     mean = "mean " * (control.box is None and control.brick is None)  # of a pattern
     height = f"{control.recorded[2] - outcome.description.low[2]:.3g} m above the base"
-    looped, marks = bool(outcome.pushed.history), []
+    looped, marks, more = bool(outcome.pushed.history), [], _rowsOf(outcome, data.rows)
+    x, label, unit = MOVED, f"{mean}displacement of {control.name}, {height} [mm]", "mm"
+    if outcome.args.ratios and data.rows and data.column(DRIFT) is not None:
+        x, label, unit = DRIFT, "drift [%]", "%"
+        more["weight_kN"] = -data["base_N_kN"][0]
     if data.rows:
-        moved, sides = data["displacement_mm"], (1, -1) if looped else (1,)
+        moved, sides = data[x], (1, -1) if looped else (1,)
         ends = [(moved[data.peak(side)], data.peakForce(side)) for side in sides]
-        marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} mm"} for x, y in ends]
+        marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} {unit}"} for x, y in ends]
     return _entry(
-        "displacement_mm",
-        f"{mean}displacement of {control.name}, {height} [mm]",
+        x,
+        label,
         {"base_shear_kN": "supports", "top_shear_kN": "loaded point"},
         "force along the push [kN]",
         marks,
         looped,
         bounds=[*outcome.scene.bounds.linesOfPush(outcome.pushes)],
-        **_rowsOf(outcome, data.rows),
+        **more,
     )
 
 

@@ -2,13 +2,15 @@
 """What holds a structure, and what is watched: commands that describe a scene."""
 
 import itertools
+from math import dist
 from typing import Annotated, Any
 
 from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated
 from ..arguments import vector as numbers
-from ..errors import IN_PLANE, refuse
+from ..bricks import Bricks
+from ..errors import IN_PLANE, Refused, refuse
 from .targets import BrickAt, Part, Target
-from .ties import MAX_STIFFNESS, End, Spring, Tie
+from .ties import BUNDLES, MAX_STIFFNESS, End, Spring, Tie
 from .script import describes
 
 PLATEN = 0.2  # [m] height of a platen
@@ -44,8 +46,10 @@ def platen(
     drive: Annotated[Axes, axes("xyz", none=True)] = "",
     springs: Annotated[dict[str, float], stiffnesses] | None = None,
     uplift: bool = False,
+    weight: Annotated[float, number("N", 0, 1e12)] | None = None,
 ) -> Target:
-    """A stiff block over the whole lower or upper side of the structure, with ``support`` joints.
+    """A rigid block over the whole lower or upper side of the structure, with ``support`` joints,
+    which alone give way.
 
     The one at the bottom is fixed. The one at the top moves, and loads act on it.
 
@@ -69,11 +73,13 @@ def platen(
         or y it turns about its own middle. Its weight counts if it can move along z
     :param uplift: whether the soil carries no tension: ``z`` of ``springs`` is spread over the side
         of the platen, on which it also turns
+    :param weight: of the one at the top [N]; None: that of 1800 kg/m³, whose mass it has in any case.
+        The difference grows in :meth:`settle`, as a dead load
     """
     bottom, plane = where == "bottom", description.plane
     level = _levelOf(description, bottom, part)
     springs = {**(springs or {})}
-    problems = [*_problems(plane, bottom, rotation, guided, drive, springs)]
+    problems = [*_problems(plane, bottom, rotation, guided, drive, springs, weight)]
     if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
         problems.append(
             "uplift needs springs with z, from which X and Y follow, and which have neither"
@@ -104,6 +110,7 @@ def platen(
             freedom="".join(axis for axis in "xyzXYZ" if axis in held),
             loaded=not bottom,
             drives="".join(drive),
+            weight=weight,
         )
     )
     if uplift:
@@ -117,11 +124,11 @@ def platen(
     return target
 
 
-def _problems(plane, bottom, rotation, guided, drive, springs):
+def _problems(plane, bottom, rotation, guided, drive, springs, weight):
     if bottom and rotation == "free":
         yield "the one at the bottom is fixed and cannot turn"
-    for name, value in {"guided": guided, "drive": drive}.items():
-        if bottom and value:
+    for name, value in {"guided": guided, "drive": drive, "weight": weight}.items():
+        if bottom and value not in ("", None):
             yield f"{name} {value!r} is for the one at the top"
     if springs and not bottom:
         yield "springs are for the one at the bottom; spring() is for any"
@@ -196,14 +203,30 @@ def hold(
     where: BrickAt,
     name: Name | None = None,
     axes: Freedoms = "xyzXYZ",
+    to: Point | None = None,
+    stiffness: Annotated[float, number("N/m²", 0, MAX_STIFFNESS, above=True)] | None = None,
 ) -> Target:
-    """Hold a brick, which then moves by :meth:`move` alone.
+    """Hold a brick at its middle, or bricks along a line. They then move by :meth:`move` alone.
+
+    A brick that is held along y alone turns about its middle. Bricks whose middles lie beside one
+    another, as whole and half ones at the end of a wall, so clamp it; a line there, or along an edge,
+    lets it turn::
+
+        scene.hold((0, 0.05, 0), "side", "y", to=(0, 0.05, 2.5))
 
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
     :param name: in curve.csv; None: ``brick`` and its index
     :param axes: along which it is held, xyz, and about which, XYZ; a prop against a wall that leans
-        is ``"y"``
+        is ``"y"``; bricks turn freely about a line
+    :param to: where a line from the point ``where`` ends [m]. Springs along ``axes`` hold each brick
+        that has a part of it, at two points of this part
+    :param stiffness: of each axis, over the length of the line [N/m²]; None: normal stiffness of
+        support joints times the least thickness of the brick
     """
+    if to is not None:
+        return _holdAlong(description, where, name, axes, to, stiffness)
+    if stiffness is not None:
+        raise Refused("hold: stiffness is that of a line, whose end to= must say")
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
             f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is"
@@ -211,6 +234,49 @@ def hold(
         )
     target = brickTarget(description, where, name, fixed=True, loaded=False)
     target.freedom = "".join({*axes, *"yXZ"} if description.plane else axes)
+    return target
+
+
+def _holdAlong(description, where, name, axes, to, stiffness):
+    """Hold bricks along a line: see :func:`hold`."""
+    begin, end = description.find(where)[1], tuple(map(float, to))
+    along = [a for a in "xyz" if a in axes and not (description.plane and a == "y")]
+    parts = begin and Bricks(description.bricks).alongLine(begin, end)
+    problems = []
+    if not begin:
+        problems.append("a line begins at a point (x, y, z) [m]")
+    elif not parts:
+        problems.append(f"no brick has a part of the line from {begin} m to {end} m")
+    if not along:
+        problems.append(f"a line holds along x, y or z, got axes {axes!r}")
+    if description.contact:
+        problems.append("collapse='follow' has no lines")
+    refuse([f"hold: {one}" for one in problems])
+    size = 1e-3 * max(b - a for a, b in zip(description.low, description.high))
+    low, high = ([f(a, b) for a, b in zip(begin, end)] for f in (min, max))
+    target = description.add(
+        Target(
+            name or f"line{sum(t.line for t in description.targets.values())}",
+            fixed=True,
+            point=begin,
+            recorded=begin,
+            box=(tuple(v - size for v in low), tuple(v + size for v in high)),
+            freedom="xyzXYZ",
+            loaded=False,
+            joined=False,
+            line=True,
+        )
+    )
+    support = description.materials.joints["support"].normalStiffness
+    for brick, (first, last), thickness in parts:
+        k = 0.5 * dist(first, last) * (stiffness or support * thickness)
+        for share in BUNDLES:
+            point = tuple(a + share * (b - a) for a, b in zip(first, last))
+            springs = tuple(k * (a in along) for a in "xyz")
+            ends = End(point, None, brick), End(point, target)
+            made = Spring(f"{target.name}_{brick}", ends, springs, (0.0, 0.0, 0.0))
+            made.overlay = target.name
+            description.connectors.append(made)
     return target
 
 

@@ -270,6 +270,7 @@ class Scene:
                 if begun:
                     prepare(self, word, arguments)
         summary.noteCourse(description)
+        summary.notePlatens(description, self.masonry)
         self.running.start(model, self.outcome.space(), SceneState(self))
         Scene.present = self
         atexit.register(self._remind)

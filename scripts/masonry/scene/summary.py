@@ -66,7 +66,7 @@ def held(description):
     """What is held, loaded and watched before the first stage: pairs of a name and a text."""
     for target in description.targets.values():
         where = "platen" if target.box else f"brick {target.brick}"
-        where = where if target.joined else "the ground"
+        where = where if target.joined else "a line of springs" if target.line else "the ground"
         what = [f"{where}, {_freedom(target.freedom or '')}"]
         if target.pressed:
             what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa" + _machine(target))
@@ -77,9 +77,7 @@ def held(description):
         yield target.name, "; ".join(what)
     platens = [t for t in description.targets.values() if t.box and t.joined]
     if platens:
-        weight = 1e-3 * GRAVITY * loadingBlock().density
-        of = lambda low, high: weight * math.prod(b - a for a, b in zip(low, high))
-        weights = ", ".join(f"{t.name} {of(*t.box):.4g} kN" for t in platens)
+        weights = ", ".join(f"{t.name} {1e-3 * weightOf(t):.4g} kN" for t in platens)
         yield "weight of platens", f"{weights}; they are rigid: only their support joints give way"
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
@@ -95,6 +93,26 @@ def _machine(target):
     follows = f"{1e-6 * stiffness:.4g} kN/mm of uplift"
     found = [friction] * (target.friction > 0) + [follows] * (stiffness > 0)
     return f", by a machine with {' and '.join(found)}" if found else ""
+
+
+def weightOf(platen):
+    """[N]"""
+    size = math.prod(b - a for a, b in zip(*platen.box))
+    return GRAVITY * loadingBlock().density * size if platen.weight is None else platen.weight
+
+
+def notePlatens(description, masonry):
+    """Say what platens weigh that act on the structure, and what gives way."""
+    moving = [
+        t for t in description.targets.values() if t.box and not t.fixed and description.gravity
+    ]
+    for platen in moving:
+        own = f", as {loadingBlock().density:g} kg/m³" if platen.weight is None else ""
+        stiffness = masonry.joints["support"].normalStiffness
+        say(
+            f"platen {platen.name}: weighs {1e-3 * weightOf(platen):.4g} kN{own} (weight= changes it);"
+            f" rigid on a support joint of {stiffness:.4g} Pa/m"
+        )
 
 
 def _freedom(freedom):

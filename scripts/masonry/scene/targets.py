@@ -26,10 +26,12 @@ class Target:
     body: int | None = None  # YADE's id, when the scene is built
     force: tuple | None = None  # [N] dead load
     pressed: float | None = None  # [Pa] on the bricks below
+    weight: float | None = None  # [N] of a platen; None: that of its mass
     riding: bool = True  # the load moves with the platen
     friction: float = 0.0  # of the machine that presses, over its load [-]
     stiffness: float = 0.0  # with which its load follows uplift [N/m]
     joined: bool = True  # a platen has joints with what it touches
+    line: bool = False  # it is a bar from which springs hold bricks along a line
 
     @property
     def isInMachine(self) -> bool:
@@ -56,7 +58,7 @@ class Target:
             yield Column(f"{name}_{axis}", "mm", what, moved)
             if self.fixed or axis in (self.freedom or ""):
                 yield force(axis, name, lambda r: 1e-3 * r.forces[name])
-            if not self.joined:
+            if not (self.joined or self.line):
                 what = f"impulse so far of what strikes {name}, along {axis}"
                 of = lambda r, i=i: r.structure.contacts.impulse(self.body)[i]
                 yield Column(f"{name}_impulse_{axis}", "Ns", what, of)

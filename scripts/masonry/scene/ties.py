@@ -25,6 +25,9 @@ OF_OVERLAY = {
     "strength": Property("N/m", 0, MAX_STIFFNESS, True),
     "strain": Property("", 0, 10, True),
 }
+#: Gauss points along an edge: two bundles of fibres, or two springs, there have the force and the
+#: moment of a layer whose strain is linear.
+BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
 NEVER = 1e300  # strength [N] and breaking elongation [m] of a tie that has none
 GROUND = -1  # in place of the id of a body
 
@@ -38,9 +41,10 @@ class End:
     brick: int | None = None  # index
 
     def bodyIn(self, ids):
-        """YADE's id of its body, -1 for the ground; ``ids``: those of the bricks."""
+        """YADE's id of its body, -1 for the ground and what is not there yet; ``ids``: those of the
+        bricks."""
         if self.target:
-            return self.target.body
+            return GROUND if self.target.body is None else self.target.body
         return GROUND if self.brick is None else ids[self.brick]
 
     @property
@@ -236,6 +240,7 @@ class Spring(Connector):
     rotation: tuple  # about x, y and z [N m]
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0
+    overlay: str = ""  # one of a line has no columns of its own
 
     WORD, PLURAL = "spring", "springs"
 
@@ -286,7 +291,13 @@ class Spring(Connector):
         sign = 1 if end is self.ends[0] else -1
         return sign * Vector3(*self.force), sign * Vector3(*self.moment)
 
+    @property
+    def isListed(self):
+        return not self.overlay
+
     def columns(self, plane):
+        if self.overlay:
+            return
         where = f"the spring between {self.ends[0].words} and {self.ends[1].words}"
         for what, unit, along in (("force", "kN", "along"), ("moment", "kNm", "about")):
             stiff = self.stiffness if what == "force" else self.rotation

@@ -52,6 +52,8 @@ def letGo(scene, target, axes, force):
     held = set(state.blockedDOFs) & set(free)
     loose = [a for a, drive in drives.items() if not (drive or a in held)]
     problems = [f"release: {target.name} is not held along {axis}" for axis in loose]
+    if target.line:
+        problems.append(f"release: {target.name} is a line, which holds to the end")
     if force is not None and not any(drives.values()):
         problems.append("release: only in place of a drive a force can stay")
     if force is not None and any(drive and drive.others for drive in drives.values()):

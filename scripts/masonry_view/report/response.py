@@ -12,6 +12,7 @@ from masonry_capacity import bilinear_curve
 from .. import curve_figure
 from masonry.numbers import drawing, quantities
 from masonry.numbers.files import readText
+from masonry.numbers.run_data import DRIFT
 from ..curve_figure import bare, energies, unitOf
 
 from .pieces import (
@@ -42,7 +43,8 @@ def curve(record):
     ideal, line = record.ideals["masonry"], None
     if not isinstance(ideal, str):
         dy, du, force = ideal.yieldDisplacement, ideal.ultimateDisplacement, ideal.yieldForce
-        line = [0, dy, du], [0, force, force]
+        percent = 0.1 / record.run["drift_height_m"] if spec["x"]["column"] == DRIFT else 1.0
+        line = [0, percent * dy, percent * du], [0, force, force]
     with drawing.style():
         drawn = curve_figure.panelOf(spec, data, line)
         frames = drawing.placesOn(drawn, _places(record, data, x, y))
