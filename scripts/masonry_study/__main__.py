@@ -14,15 +14,13 @@ if __name__ == "__main__":
 
 from masonry.errors import Interrupted, Refused, Unwritable
 from masonry.terminal import say
-from . import slurm
+from . import local, slurm
 from .calibrate import Calibration
 from .gathering import CSV, Folder, gather
-from .local import Local
 from .plan import Study
 from .start import NOTHING, begin
 
 
-KEPT = "what was computed is kept, and the same command goes on when there is space"
 SWITCHES = {
     "--slurm": "run the rows on a cluster: one job array",
     "--prepare": "check the study and make its folder; run nothing",
@@ -104,7 +102,7 @@ def main(words):
             say(f"{study.runs} rows; see {folder.path}")
             return 0
         try:
-            Local(folder, study.runs, args.jobs).run()
+            local.run(folder, args.jobs)
         except Interrupted:
             tell(folder)
             say("interrupted: the same command goes on from here")
@@ -117,11 +115,11 @@ def main(words):
         say(problem, sys.stderr)
         return 2
     except Unwritable as problem:
-        say(f"{problem}; {KEPT}", sys.stderr)
+        say(f"{problem}; {local.KEPT}", sys.stderr)
         return 1
     except OSError as error:
         name = error.filename or args.out
-        say(f"cannot write {name}: {error.strerror}; {KEPT}", sys.stderr)
+        say(f"cannot write {name}: {error.strerror}; {local.KEPT}", sys.stderr)
         return 1
 
 

@@ -33,7 +33,7 @@ from masonry.numbers.files import readCurve
 from . import pictures
 from .designs import points, seeded
 from .gathering import Folder, gather, written
-from .local import Local
+from . import local
 from .plan import Study
 from .records import CURVE, Record
 from .start import begin
@@ -267,7 +267,7 @@ class Calibration:
         for number, specimen in enumerate(self.specimens, 1):
             study, place = studyOf(specimen), f"specimen{number}_{name}"
             folder = begin(study, os.path.join(self._place, place), self._near)
-            Local(folder, study.runs, self._jobs).run()
+            local.run(folder, self._jobs)
             gather(folder)
             record = Record(folder.path)
             found.append(specimen.of(record))

@@ -13,6 +13,7 @@ in the folder itself, and it must be the file with which the study began.
 
 import argparse
 import contextlib
+import functools
 import hashlib
 import json
 import os
@@ -22,8 +23,11 @@ import subprocess
 import sys
 import time
 
+if __name__ == "__main__":
+    os.environ["OMP_NUM_THREADS"] = "1"  # which numpy reads
+
 from masonry import background
-from masonry.run import batch
+from masonry.run import batch, warm
 from masonry.errors import FolderLocked, NotResumed, Refused
 from masonry.terminal import say
 from masonry.folders import inside
@@ -103,7 +107,7 @@ class RowRunner:
         folder, checkpoint = self.folder, self.folder.checkpoint(number)
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
-            status = self._yade(number, log)
+            status = self._runScene(number, log)
             if self.stopped:
                 return 130
             if status == 0 and not folder.isEnded(number):
@@ -119,11 +123,11 @@ class RowRunner:
                 return status
         return status
 
-    def _yade(self, number, log):
-        place = f"{self.folder.of(TABLE)}:{number + 1}"
-        env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
-        command = ["yade", "-n", "--threads=1", "-x", self.script]
-        self._child = background.Program(command, log, env, os.path.dirname(self.script))
+    def _runScene(self, number, log):
+        warm.load()
+        env = {batch.VARIABLE: f"{self.folder.of(TABLE)}:{number + 1}"}
+        act = functools.partial(warm.runScript, self.script, [])
+        self._child = background.Program(act, log, env, os.path.dirname(self.script))
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()

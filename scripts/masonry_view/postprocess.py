@@ -4,23 +4,20 @@
     python3 -P -m masonry_view.postprocess
 
 A run starts it early, so that it loads what it needs while the run goes on. When the files of the
-run are there, it reads the folder from the standard input, up to a zero byte. It draws curve.png
-and cracks.png in a copy of the process, mechanism.png in another, makes the report meanwhile, and
-writes report.html when the figures are there. Errors that nobody expects go to the standard output,
-as JSON: pairs of a note and a traceback.
+run are there, it reads the folder from the standard input, up to a zero byte, draws the figures,
+and writes report.html. Errors that nobody expects go to the standard output, as JSON: pairs of a
+note and a traceback.
 """
 
 import contextlib
 import gc
 import io
 import json
-import math
 import os
 import sys
 
 from masonry import memory
-from masonry.auxiliary import Auxiliary, described
-from masonry.background import Task
+from masonry.auxiliary import described
 from masonry.folders import check
 from masonry.numbers.drawing import empty, style
 from masonry.numbers.files import onFolder
@@ -56,15 +53,14 @@ def _folder():
     return ""
 
 
-def _tasks(folder):
-    """Begin to draw in copies of the process, which return what :func:`_tried` does."""
+def _draws(folder):
+    """The functions that draw the figures of a folder."""
     try:
         needed("matplotlib")
     except Missing as missing:
         say(f"the figures are left out: {missing}", sys.stderr)
         return []
-    draws = [figures.drawRun] + [mechanism.draw] * mechanism.isThere(folder)
-    return [Task(lambda draw=draw: [_tried("the figures", draw, folder)]) for draw in draws]
+    return [figures.drawRun] + [mechanism.draw] * mechanism.isThere(folder)
 
 
 def _tried(what, act, *words):
@@ -88,27 +84,16 @@ def main():
     folder = _folder()
     if not folder:
         return 0
-    tasks = _tasks(folder)
-
-    def ready():
-        for task in tasks:
-            task.ready(seconds=math.inf)
 
     def write(directory):
         memory.reserve()
         check(directory)
-        record = report.read(directory)
-        record.ready = ready
-        report.write(record, os.path.join(directory, report.NAME))
+        report.write(report.read(directory), os.path.join(directory, report.NAME))
 
+    done = [_tried("the figures", draw, folder) for draw in _draws(folder)]
     written, failures = _tried("the report", write, folder)
-    drawn = 0
-    for task in tasks:
-        with Auxiliary("the figures", lambda *failure: failures.append(failure)):
-            status, lost = task.result()
-            drawn = max(drawn, status)
-            failures += lost
-    json.dump(failures, sys.stdout)
+    drawn = max([status for status, _ in done], default=0)
+    json.dump([one for _, lost in done for one in lost] + failures, sys.stdout)
     return NO_FIGURES if drawn else NO_REPORT if written else 0
 
 

@@ -18,7 +18,7 @@ from masonry.numbers.files import readCurve
 from masonry_study import Calibration, Specimen, Study, uniform
 from masonry_study.calibrate import UNKNOWN
 from masonry_study.gathering import gather
-from masonry_study.local import Local
+from masonry_study import local
 from masonry_study.pictures import increasing
 from masonry_study.records import Record
 from masonry_study.start import begin
@@ -58,7 +58,7 @@ def tested(jobs):
     for number, stress in enumerate(STRESSES, 1):
         study = Study("couplet", options(stress), CASES, HIDDEN, vary)
         folder = begin(study, os.path.join(PLACE, f"hidden{number}"), HERE)
-        Local(folder, CASES, jobs).run()
+        local.run(folder, jobs)
         gather(folder)
         grid = np.linspace(0, END, POINTS + 1)
         for case in range(1, CASES + 1):

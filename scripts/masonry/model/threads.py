@@ -34,9 +34,11 @@ def _isAsked():
         )
 
 
-def limit():
+def limit(count=0):
     """Give steps their threads, and YADE's own engines one if the user says nothing. ``import
     masonry`` does this.
+
+    :param count: of threads; 0: as the user says
 
     In plain Python OpenMP takes all cores, whose threads wait by spinning: on a busy machine a step
     then takes hundreds of times as long.
@@ -44,10 +46,10 @@ def limit():
     global _allowed, _ofYade, _asked
     with contextlib.suppress(AttributeError):  # a YADE without OpenMP
         openmp = ctypes.CDLL(None)
-        if "OMP_NUM_THREADS" not in os.environ:
-            openmp.omp_set_num_threads(1)
+        if count or "OMP_NUM_THREADS" not in os.environ:
+            openmp.omp_set_num_threads(count or 1)
         _ofYade = openmp.omp_get_max_threads()
-    _asked = _isAsked()
+    _asked = bool(count) or _isAsked()
     _allowed = _ofYade if _asked else min(MAX_THREADS, len(os.sched_getaffinity(0)))
     allowThreads(_allowed, ALWAYS)
 

@@ -14,27 +14,25 @@ again with the same words takes those that are over. No YADE is needed.
 """
 
 import contextlib
+import functools
 import hashlib
 import json
 import os
 import pathlib
 import shutil
-import sys
 from .. import background
 from ..errors import NotAccurate, Refused
 from ..terminal import say
 from ..auxiliary import Auxiliary, addToLog
 from ..folders import check, inside, replaced
 from ..numbers.files import readRun
-from . import batch
+from . import batch, warm
 from .option_table import asOption
 from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
-COMPANION = "MASONRY_COMPANION"  # variable of the environment of a companion
-#: Whether this process is a companion of another run; what it starts itself is not.
-_isCompanion = bool(os.environ.pop(COMPANION, ""))
+_isCompanion = False  # whether this process is a companion of another run
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another
 #: run: Student's t with two degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean
 #: range of three in standard deviations.
@@ -108,11 +106,12 @@ class AuxiliaryRuns:
     """The companions of a run.
 
     :param folder: of the results of the run
-    :param command: words that run the scene with the options of the user
+    :param script: of the scene; ``words``: the options of the user
     """
 
-    def __init__(self, folder, command):
-        self.folder, self.command = os.path.join(folder, FOLDER), command
+    def __init__(self, folder, script="", words=()):
+        self.folder = os.path.join(folder, FOLDER)
+        self.script, self.words = script, words
         self.numbers = {}  # of the runs that are over
         self.failed = False  # whether a run was not refused, but failed
         self.percent = self.fidelity = None  # what was asked for [%], what was chosen
@@ -202,14 +201,14 @@ class AuxiliaryRuns:
             f"{asOption(option)}={value}" for option, value in options.items() if value is not None
         ]
         folder = self.folderOf(name)
-        command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]
-        env = {n: v for n, v in os.environ.items() if n not in (batch.VARIABLE, batch.PROBE)}
-        env.update({"OMP_NUM_THREADS": "1", COMPANION: "1"})
+        words = [*self.words, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]
+        act = functools.partial(_runCompanion, self.script, words)
+        env = {batch.VARIABLE: None, batch.PROBE: None}
         try:
             with open(folder + ".log", "wb", opener=inside) as log:
-                return background.Program(command, log, env)
+                return background.Program(act, log, env)
         except OSError as error:
-            raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None
+            raise Refused(f"--accuracy: cannot run {self.script}: {error.strerror}") from None
 
     def _ended(self, name, program):
         if program.returncode not in (0, 1) or not self._take(name):
@@ -282,6 +281,12 @@ class AuxiliaryRuns:
         return entries
 
 
+def _runCompanion(script, words):
+    global _isCompanion
+    _isCompanion = True
+    return warm.runScript(script, words)
+
+
 # -- what is reported and asked --------------------------------------------------------------------
 
 
@@ -349,9 +354,8 @@ def ask(name, args, script, words):
             f"--accuracy: scene {name} must be a script that takes its options from the command"
             " line, since it is run several times"
         )
-    program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
     folder = args.out or os.path.join("results", name)
-    companions = AuxiliaryRuns(folder, [*program, script, *words])
+    companions = AuxiliaryRuns(folder, script, words)
     command = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
     text = pathlib.Path(script).read_bytes() + command.encode()
     companions.begin(hashlib.sha256(text).hexdigest())
@@ -367,7 +371,7 @@ def ask(name, args, script, words):
 
 def _resumed(args):
     """:func:`ask` of a resumed run, which has the companions of its beginning."""
-    companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
+    companions, fidelity = AuxiliaryRuns(args.resume), fidelityOf(args)
     companions.percent, companions.fidelity = args.accuracy, fidelity
     companions.read()
     number = FIDELITIES.index(fidelity) if fidelity else 0

@@ -48,7 +48,6 @@ class Record:
         #: the drawing of what was built as SVG and a sentence about it, or None
         self.elevation = None
         self.frameTimes, self.frameCount = [], 0
-        self.ready = lambda: None  #: returns when the figures of the folder are there
         self._frames()
 
     def _columns(self):
@@ -145,7 +144,6 @@ class Record:
 
     def image(self, name):
         """A figure of the folder as an address that holds it all, or None if it is not there."""
-        self.ready()
         try:
             data = readWhole(os.path.join(self.directory, name))
         except OSError:
