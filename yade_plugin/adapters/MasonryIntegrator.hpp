@@ -36,10 +36,23 @@ class MasonryIntegrator : public EngineAdapter<MasonryIntegrator>, public Integr
         GravityWork::describe<I>(visit);
         visit("last", computed(&I::lastForces, &I::setLastForces),
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
+        visit("shaking", &MasonryIntegrator::visitShaking, described("How far the record of the ground's motion is"));
+    }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("shake", &MasonryIntegrator::shake, py::args("samples", "axes", "interval", "factor"),
+                "From now on gravity is the present one less the acceleration of the ground: its samples [m/s² over "
+                "factor] along axes, a list of unit vectors, one axis after the other, interval [s] apart. Each step "
+                "has the acceleration of its middle. Checkpoints hold how far the record is, but not its samples. An "
+                "empty list ends it, and gravity is what it was.");
     }
 
     using Integrator::problems;
     void step(SceneStore&);
+
+private:
+    void shake(const std::vector<double>& samples, const std::vector<Vector3r>& axes, double interval, double factor);
+    void visitShaking(StateNumbers& n) { shaking.visitState(n); }
 };
 
 } // namespace masonry

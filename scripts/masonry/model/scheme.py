@@ -74,13 +74,14 @@ class Scheme:
         if self.limit != self._usualLimit:
             self.chooseTimeStep(self._usualLimit)
 
-    def chooseTimeStep(self, limit=None):
+    def chooseTimeStep(self, limit=None, fraction=None):
         """Choose the time step for the present damping. Returns the stable limit.
 
         :param limit: if known [s]; that of blocks that have moved differs in its third digit
+        :param fraction: time step over limit [-]; None: that of the options
         """
         self.limit = limit or timeStepLimit()
-        O.dt = self.args.dt_fraction * self.limit
+        O.dt = self.limit * (fraction or self.args.dt_fraction)
         return self.limit
 
     def keepStable(self):
@@ -92,6 +93,11 @@ class Scheme:
     def setGravity(self, gravity):
         """[m/s²]; deformable units follow."""
         self.integrator.gravity = gravity
+
+    def shake(self, motions, axes, every, scale):
+        """Shake the ground, beside the present gravity, until the next call: samples along each
+        axis, which are ``every`` [s] apart, times ``scale`` [m/s²]. Without motions it ends."""
+        self.integrator.shake([a for motion in motions for a in motion], axes, every, scale)
 
     @property
     def now(self):

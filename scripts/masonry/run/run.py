@@ -212,11 +212,10 @@ class Run:
         self.memory = memory
         return memory
 
-    def advance(self, steps, one=None):
+    def advance(self, steps):
         """Take time steps, and leave a checkpoint if one is due after the last of them, or between
         slow ones (LOOK_EVERY).
 
-        :param one: function that makes one step, of its number in this call, from 0; None: YADE's
         :raises Interrupted: after the present step, if the user sent Ctrl-C or SIGTERM
         :raises Collapsed: if a block has fallen (help(masonry.MasonryEnergy))
         """
@@ -231,7 +230,7 @@ class Run:
         if not isRest:
             self.advanced, state.left = True, steps
         while True:
-            self._take(steps, one)
+            self._take(steps)
             self.checkpoints.save()
             if self._now - self.checkpoints.since > 60 * self.args.checkpoint_every:
                 self.checkpoints.write()
@@ -244,14 +243,14 @@ class Run:
         if self.context.endsAtFall:
             self.model.checkFallen()
 
-    def _take(self, steps, one):
+    def _take(self, steps):
         """Take steps that are left of an advance, until LOOK_EVERY or an interruption."""
         state, step = self.state, O.step
         number, self.checkpoints.saved = steps - state.left, None
         now = began = time.perf_counter()
         try:
             while number < steps and not self.interrupted:
-                one(number) if one else step()
+                step()
                 number += 1
                 now = time.perf_counter()
                 if now - began > LOOK_EVERY:

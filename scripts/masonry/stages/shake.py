@@ -19,7 +19,7 @@ from ..terminal import say
 from ..run import batch
 from ..scene.accelerograms import components, drift
 from ..scene.ground import UNITS, readRecord, record
-from ..run.option_table import Damping
+from ..run.option_table import USUAL, Damping
 from ..scene.script import SHAKES
 from .gravity import sideways
 from .answers import COLLAPSED, DONE, Answer
@@ -27,6 +27,9 @@ from .rest import settle
 from .stage import Duration, Time, Timed, combines, stage, timed
 
 TABLE = "shakes.csv"
+#: Time step over its limit without numerical damping, under which joints that yield need the larger
+#: margin of ``--dt-fraction``; unless the user chooses that option.
+UNDAMPED = 0.95
 LONGEST = 4.0  # [s]: the longest first period that is looked for
 
 
@@ -67,7 +70,8 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     at, scheme = scene.running.stage(name, Damped()), scene.model.scheme
     scheme.trueMasses(name)
     scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
-    at.limit = scheme.chooseTimeStep(at.limit)
+    usual = scene.args.dt_fraction == USUAL["dt_fraction"]
+    at.limit = scheme.chooseTimeStep(at.limit, UNDAMPED if usual and not damping else None)
     return at
 
 
@@ -157,22 +161,13 @@ def shake(
             f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples,"
             f" {every:.3g} s, so that some samples are left out; a smaller --dt-fraction helps"
         )
-    at.gravity = at.gravity or list(scene.model.scheme.now)
-    down = Vector3(*at.gravity)
-
-    def before(done, beyond):
-        place = (done + 0.5) * O.dt / every
-        first = int(place)
-        share, now = place - first, down
-        if first + 1 < len(values):
-            for motion, axis in zip(motions, axes):
-                a = (1 - share) * motion[first] + share * motion[first + 1]
-                now = now - scale * a * axis
-        scene.model.scheme.setGravity(now)
-
+    scheme = scene.model.scheme
+    at.gravity = at.gravity or list(scheme.now)
+    scheme.setGravity(Vector3(*at.gravity))
+    scheme.shake(motions, axes, every, scale)
     duration = (len(values) - 1) * every + after
-    timed(scene, at, scene.share * duration, before, each=1)
-    scene.model.scheme.setGravity(down)
+    timed(scene, at, scene.share * duration)
+    scheme.shake([], [], every, scale)
     return DONE
 
 

@@ -323,30 +323,26 @@ class Timed:
     nextFrame: int = 0  # number of the step after which a frame is due
 
 
-def timed(scene, at, duration, before, after=None, each=None):
+def timed(scene, at, duration, before=None, after=None):
     """Steps for a duration [s], with rows and frames evenly in time.
 
     :param before: function of the number of steps so far and after the next stretch, called before
-        each stretch
+        each stretch of at most 20 steps; None: a stretch ends with a row
     :param after: function that is called after each row
-    :param each: steps of a stretch; None: 20, or fewer
     """
-    running, step = scene.running, O.step
+    running = scene.running
     length = max(1, round(duration / O.dt))
-    stretch = each or max(1, min(20, length // ROWS))
-    perRow = max(stretch, length // ROWS // stretch * stretch)
+    perRow = stretch = max(1, length // ROWS)
+    if before:
+        stretch = min(20, perRow)
+        perRow = perRow // stretch * stretch
     perFrame = max(1, length // FRAMES)
-
-    def alone(number):  # a step with its own ``before``
-        before(at.done + number, at.done + number + 1)
-        step()
-
     while at.done < length:
         goal = min(length, (at.done // perRow + 1) * perRow)
         beyond = min(goal, at.done + stretch)
-        before(at.done, beyond)
-        beyond = goal if stretch == 1 else beyond
-        running.advance(beyond - at.done, alone if stretch == 1 else None)
+        if before:
+            before(at.done, beyond)
+        running.advance(beyond - at.done)
         at.done = beyond
         if at.done < goal:
             continue

@@ -67,6 +67,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     pendingExternal += halfWork(foreign, scene.dt, motionOf);
     for (auto* load : loads)
         load->workAfter(scene.dt, motionOf);
+    if (!shaking.samples.empty()) ++shaking.steps;
 }
 
 // The power of forces and weight on a body along its blocked axes with its present velocity, less that with the

@@ -4,6 +4,7 @@
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"
+#include "GroundMotion.hpp"
 #include "motion/EnergyLedger.hpp"
 
 namespace masonry {
@@ -17,6 +18,7 @@ public:
     std::string dampingKind = "combined";     // or "local"
     double massDamping = 0;                   // mass-proportional viscous damping [1/s]
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
+    GroundMotion shaking;                     // sets the gravity of every step while it has a record
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;

@@ -113,6 +113,15 @@ bool SceneStore::isOpenFor(const yade::Engine& engine) {
     return sameJoints();
 }
 
+void SceneStore::opened() {
+    openedStep_ = scene_.iter;
+    place_ = engines_.size();
+    endsWith.reset();
+    readForeignForces();
+    if (integrator && !integrator->shaking.samples.empty())
+        integrator->gravity = integrator->shaking.gravityIn(scene_.dt);
+}
+
 void SceneStore::readEngines() {
     engines_.clear();
     loads.clear();

@@ -67,12 +67,7 @@ public:
     // Whether another engine has opened the present step by update() and checkBeforeStep(), and neither engines nor
     // joints have changed since.
     bool isOpenFor(const yade::Engine&);
-    void opened() {
-        openedStep_ = scene_.iter;
-        place_ = engines_.size();
-        endsWith.reset();
-        readForeignForces();
-    }
+    void opened();
 
     bool checked = false; // whether checkBeforeStep() has seen the scene since it changed
 
