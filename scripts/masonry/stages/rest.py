@@ -125,6 +125,9 @@ def settle(
     and hardly anything moves. Presses and dead loads grow when it is called first; they stay when
     it is called again, for example after :meth:`release`. What then falls slowly needs ``longest``.
 
+    Where all joints stay elastic, there is one equilibrium, which the first call finds by the
+    stiffness matrix, and steps only check.
+
     :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for
         tall structures, for soft springs under platens, and after the release of a drive
     :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the
@@ -145,7 +148,7 @@ def settle(
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, scene.args.damping), damping)
     if not (grown or at.done or at.solved):
-        at.solved = solve(scene)
+        scene.running.state.stages[-1]["solved"] = at.solved = solve(scene)
     return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
 
 
@@ -226,7 +229,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
         running.show(
             min(1, at.done / most),
             lambda: (
-                f"{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
+                f"{'elastic solution, ' * at.solved}{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
                 " the elastic"
             ),
             at.quiet == CONSECUTIVE_CHECKS or ends,
