@@ -27,6 +27,7 @@
 #include "engine/joints/Resultant.hpp"
 #include "engine/store/SceneStore.hpp"
 #include "engine/watch/CriticalTimeStep.hpp"
+#include "engine/watch/ElasticSolution.hpp"
 #include "host/SelfCheck.hpp"
 
 namespace {
@@ -192,6 +193,11 @@ static void registerAll() {
         "joints, masses, blocked motions or damping.");
     py::def("timeStepLimit", &presentLimit,
             "The first number of criticalTimeStep() [s], in half the time. For masonry.model.structure.");
+    py::class_<ElasticSolution, boost::noncopyable>(
+        "ElasticSolution", "Equilibrium of the scene while joints and units stay elastic. For masonry.stages.rest.")
+        .def("move", &ElasticSolution::move,
+             "Move all to where the forces of the last step, in which nothing has moved, would be in equilibrium. "
+             "Returns the square root of the work of what was not in equilibrium [J^(1/2)].");
     py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
             "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
             "and what is "

@@ -22,7 +22,8 @@ none; what does not apply is left out or None:
 - ``stages``: of every ``stage`` its ``steps``, their ``seconds`` of wall-clock time, the number
   ``first_row`` of its first row of curve.csv, from 0, ``load``: its kind, its name, that of the
   load back, and the control of a push if it is not what is pushed, and ``continued``: whether it is
-  a push that goes on with the curve of the one before
+  a push that goes on with the curve of the one before; of the first ``settle`` also ``solved``:
+  whether it began with the elastic solution
 - ``script``: the commands with their arguments, also those that were left out; a long list of
   numbers is a text
 - ``built``, ``held_and_loaded``: pairs of texts on the structure before the first stage; not with

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from .._masonry import loadScene, saveScene
+from .._masonry import ElasticSolution, loadScene, saveScene
 from ..arguments import oneOf
 from ..model import period
 from ..model.motion import REST, SWUNG
@@ -35,6 +35,9 @@ PERIODS = 4.0
 WAITED = 10.0  # periods on springs for which a trial waits at least
 SLENDER = 8.0  # height over the least width from which a settled structure may buckle [-]
 SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
+#: Elastic solution: time step in which nothing moves [s]; largest error of its forces [-]; how
+#: often all is moved at most; energy lost in joints that count as elastic over that stored [-].
+INSTANT, EXACT, CORRECTIONS, LOST = 1e-30, 1e-9, 20, 1e-6
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -86,6 +89,7 @@ class Resting(Waiting):
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
     level: float | None = None  # of what was pushed, when the loads had grown [m]
+    solved: bool = False  # whether the stage began with the elastic solution
 
 
 def buckles(scene: Any) -> bool:
@@ -121,6 +125,9 @@ def settle(
     and hardly anything moves. Presses and dead loads grow when it is called first; they stay when
     it is called again, for example after :meth:`release`. What then falls slowly needs ``longest``.
 
+    Where all joints stay elastic, there is one equilibrium, which the first call finds by the
+    stiffness matrix, and steps only check.
+
     :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for
         tall structures, for soft springs under platens, and after the release of a drive
     :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the
@@ -134,12 +141,44 @@ def settle(
         scene.grown = True
         return AT_REST
     model = scene.model
-    grow, scene.grown = (lambda x: None) if scene.grown else model.loading.grow, True
+    grown, scene.grown = scene.grown, True
+    grow = (lambda x: None) if grown else model.loading.grow
     at = scene.running.stage("settle", Resting())
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, scene.args.damping), damping)
+    if not (grown or at.done or at.solved):
+        scene.running.state.stages[-1]["solved"] = at.solved = solve(scene)
     return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
+
+
+def solve(scene: Any) -> bool:
+    """Put gravity and all loads on a structure that has not moved, and take it to its equilibrium,
+    if all joints stay elastic on the way, so that it is the only one. Returns whether; else the
+    scene is as before."""
+    model, running = scene.model, scene.running
+    if model.contacts or scene.description.functors:
+        return False
+    dt, before, scheme, solved = O.dt, saveScene("null"), model.scheme, False
+    try:
+        with running.clock("steps"):
+            model.loading.grow(1.0)
+            O.dt = INSTANT
+            scheme.scaleMasses(0.0)
+            O.step()
+            solution, errors = ElasticSolution(), []
+            while not solved and len(errors) < CORRECTIONS and model.staysElastic(LOST):
+                errors.append(solution.move())
+                O.step()
+                solved = errors[-1] <= EXACT * errors[0] and model.staysElastic(LOST)
+            running.state.steps += 1 + len(errors)
+    except (RuntimeError, ValueError):  # something falls, or can move without resistance
+        pass
+    if not solved:
+        loadScene(before)
+    scheme.scaleMasses(scheme.massScaling)
+    O.dt = dt
+    return solved
 
 
 def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False, dying=False):
@@ -167,6 +206,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
             f" step, {O.dt:.3g} s"
         )
+    if at.solved and not at.done:  # a check sees it at rest
+        at.done, at.quiet = (growing // EVERY + 1) * 2 * EVERY, CONSECUTIVE_CHECKS - 1
     while (dying or at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
         load = min(1.0, (at.done + every) / growing)
         grow(load)
@@ -188,7 +229,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
         running.show(
             min(1, at.done / most),
             lambda: (
-                f"{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
+                f"{'elastic solution, ' * at.solved}{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
                 " the elastic"
             ),
             at.quiet == CONSECUTIVE_CHECKS or ends,

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The equilibrium of a scene whose joints, connectors and units are as elastic as in the beginning.
+#pragma once
+#include "Dynamics.hpp"
+#include <Eigen/SparseCholesky>
+
+namespace masonry {
+
+// The Cholesky factors of the stiffness matrix of the present scene.
+class ElasticSolution {
+public:
+    // Throws std::invalid_argument if something can move without resistance.
+    ElasticSolution();
+
+    // Moves all bodies and nodes to where the forces of the last step would be in equilibrium, while drives hold. That
+    // step must have been so short that nothing has moved since. Returns the square root of what the forces that were
+    // not in equilibrium do in this motion [J^(1/2)]. A second move corrects what was not linear in the first.
+    //
+    // Half of that work counts as taken by damping. Loads grow in the first move, so theirs is half of what they do.
+    double move();
+
+private:
+    using Vector = Eigen::VectorXd;
+    Vector imbalance() const;
+    Vector alongDrive(const Load&) const;
+    void holdDrives(Vector& moved) const;
+
+    SceneStore& scene_;
+    Dynamics dynamics_;
+    std::vector<int> places_; // of every degree of freedom in the factors; -1 where it is blocked
+    int count_ = 0;           // of those that can move
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
+    bool first_ = true;
+};
+
+} // namespace masonry
