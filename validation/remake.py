@@ -311,6 +311,21 @@ def ofStudies():
             ("validation/dry_joint_walls/rig_*",),
         ),
         Result(
+            "dry_joint_walls/reversals",
+            (program("dry_joint_walls/reversals.py"),),
+            ("dry_joint_walls/reversals.md", "dry_joint_walls/reversals.png"),
+            (
+                "validation/dry_joint_walls/re*.py",
+                "validation/dry_joint_walls/rig.py",
+                "validation/dry_joint_walls/blind.json",
+                "validation/stone_walls/rules.py",
+                *RIGID,
+                *CYCLIC,
+            ),
+            12,
+            ("validation/dry_joint_walls/reversals",),
+        ),
+        Result(
             "dry_joint_walls/plain_wall",
             (program("dry_joint_walls/plain_wall.py"),),
             (),

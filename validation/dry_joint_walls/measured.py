@@ -25,6 +25,7 @@ from masonry.numbers import loops
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 REFERENCE = os.path.join(HERE, "reference")
+MORTAR = os.path.join(REFERENCE, "mortar")  # loops of other walls of the database
 LEVELS = (100, 175, 250)  # [kN]
 
 #: A reversal of less than this is scatter of the digitised curves [mm]. The scatter is 0.1 mm, in
@@ -118,6 +119,8 @@ DOUBTFUL = {
     ),
 }
 
+DRIVEN = "WI2175"  # the wall in mortar that rig.py drives through its history
+
 #: A cycle of a curve with its numbers: those of :class:`masonry.numbers.loops.Cycle`, and why it is
 #: ``doubtful`` (None if not).
 Measured = namedtuple("Measured", "cycle doubtful")
@@ -125,11 +128,17 @@ Measured = namedtuple("Measured", "cycle doubtful")
 
 def walls(level=None):
     """Names of the walls, of one vertical load [kN] or of all."""
-    found = sorted(
-        os.path.basename(path).split("_")[1]
-        for path in glob.glob(os.path.join(REFERENCE, "FD_*.csv"))
-    )
-    return [w for w in found if level is None or levelOf(w) == level]
+    return [w for w in _namesIn(REFERENCE) if level is None or levelOf(w) == level]
+
+
+def mortarWalls():
+    """Names of the walls in mortar."""
+    return _namesIn(MORTAR)
+
+
+def _namesIn(folder):
+    paths = glob.glob(os.path.join(folder, "FD_*.csv"))
+    return sorted(os.path.basename(path).split("_")[1] for path in paths)
 
 
 def levelOf(wall):
@@ -195,10 +204,9 @@ def pieces(wall):
 
     :returns: a list of (number of the piece in the file, array of displacement [mm] and force [kN])
     """
-    numbered = list(
-        enumerate(rawPieces(os.path.join(REFERENCE, f"FD_{wall}_Vasconcelos2009.csv"))[0])
-    )
-    for action, piece, *rest in REPAIRS[wall]:
+    (path,) = glob.glob(os.path.join(folderOf(wall), f"FD_{wall}_*.csv"))
+    numbered = list(enumerate(rawPieces(path)[0]))
+    for action, piece, *rest in REPAIRS.get(wall, ()):
         if action == "drop":
             first, last, _ = rest
             number, points = numbered[piece]
@@ -245,7 +253,7 @@ def cycles(wall):
     moved, force, number = curve(wall)
     holes = [
         int(np.flatnonzero(number == piece)[-1])
-        for action, piece, *_ in REPAIRS[wall]
+        for action, piece, *_ in REPAIRS.get(wall, ())
         if action == "hole"
     ]
     first, why = DOUBTFUL.get(wall, (None, None))
@@ -279,8 +287,12 @@ def peaks(level):
         }
 
 
+def folderOf(wall):
+    return MORTAR if wall in mortarWalls() else REFERENCE
+
+
 def historyPath(wall):
-    return os.path.join(REFERENCE, f"history_{wall}.csv")
+    return os.path.join(folderOf(wall), f"history_{wall}.csv")
 
 
 def historyText(wall):
@@ -293,7 +305,7 @@ def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="write the histories")
     if parser.parse_args(words).write:
-        for wall in walls():
+        for wall in (*walls(), DRIVEN):
             with open(historyPath(wall), "w") as f:
                 f.write(historyText(wall))
         return
