@@ -201,8 +201,9 @@ def hold(
 
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
     :param name: in curve.csv; None: ``brick`` and its index
-    :param axes: along which it is held, xyz, and about which, XYZ; a prop against a wall that leans
-        is ``"y"``
+    :param axes: along which it is held, xyz, and about which, XYZ. An edge of a panel along x is
+        ``"y"`` where it is hinged and ``"yZ"`` where it is clamped; ``x`` makes it an abutment,
+        between two of which the panel arches
     """
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
