@@ -7,8 +7,8 @@ cracks at the share ξ of its height, falls at (t/h)/ξ·(2 + (O/W)(1 + 1/(1 - �
 least is 9 t/h, at ξ = 2/3: 0.343 g. The run cracks there and falls between 0.338 and 0.344 g. It
 takes about 10 s.
 
-``--two-way`` holds a panel with bond at its vertical edges, too: hinged and clamped, with a quarter
-of the usual fracture energies and with all, beside AS 3700. It takes about two minutes.
+``--four-edges`` holds a panel with bond at its vertical edges, too: hinged and clamped, with a
+quarter of the usual fracture energies and with all, beside AS 3700. It takes about two minutes.
 """
 
 from masonry import AT_REST, Scene, bricks, materials
@@ -16,7 +16,7 @@ from masonry.scene.options import parser
 from masonry_capacity import panelPressure
 
 words = parser(__doc__, until=None)
-words.add_argument("--two-way", action="store_true", help="held at four edges, with bond")
+words.add_argument("--four-edges", action="store_true", help="a panel with bond")
 args = words.parse_args()
 
 
@@ -32,7 +32,7 @@ def standing(wall, masonry, stress, height, edges=()):
     return scene
 
 
-if args.two_way:
+if args.four_edges:
     brick, joint, unit = (0.23, 0.11, 0.076), 0.01, (0.24, 0.11, 0.086)  # [m]
     ft, fv0, stress = 0.3e6, 0.42e6, 20e3  # [Pa]
     known = dict(E=3.5e9, unit_E=50e9, fc=16e6, friction=0.6, density=1900, unit_ft=2e6)

@@ -3,7 +3,7 @@
 
 from hosted import *
 
-WEAK = materials.masonry(
+BRITTLE = materials.masonry(
     unit=(0.19, 0.1, 0.09),
     joint=0.01,
     E=5e9,
@@ -22,7 +22,7 @@ def beam(folder, axes="xyzXYZ", turned=False, gravity=0):
     for n in range(7):
         corners = (0.2 * n, 0, 0), (0.2 * n + 0.2, 0.1, 0.1)
         made += bricks.block(*((y, x, z) if turned else (x, y, z) for x, y, z in corners))
-    scene = lean(folder, made, WEAK, plane=False, gravity=gravity)
+    scene = lean(folder, made, BRITTLE, plane=False, gravity=gravity)
     for n in (0, 6):
         scene.hold(n, axes=axes)
     scene.settle()
