@@ -409,7 +409,7 @@ def ofStudies():
             ),
             (),
             ("validation/open_tests/*.py", *RIGID, *DEFORMABLE),
-            16,
+            40,
         ),
         Result(
             "records",

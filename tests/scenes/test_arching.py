@@ -3,7 +3,7 @@
 
 from hosted import *
 
-WEAK = materials.masonry(
+BRITTLE = materials.masonry(
     unit=(0.19, 0.1, 0.09),
     joint=0.01,
     E=5e9,
@@ -22,7 +22,7 @@ def beam(folder, axes="xyzXYZ", turned=False, gravity=0):
     for n in range(7):
         corners = (0.2 * n, 0, 0), (0.2 * n + 0.2, 0.1, 0.1)
         made += bricks.block(*((y, x, z) if turned else (x, y, z) for x, y, z in corners))
-    scene = lean(folder, made, WEAK, plane=False, gravity=gravity)
+    scene = lean(folder, made, BRITTLE, plane=False, gravity=gravity)
     for n in (0, 6):
         scene.hold(n, axes=axes)
     scene.settle()
@@ -62,7 +62,7 @@ def test_cracked_bricks_between_abutments_carry_all_by_arching(tmp_path, stage, 
 @mark.parametrize("axes, towards", [("yz", (0, 1, 0)), ("yzZ", (0, 1, 0)), ("xyzXYZ", (1, 0, 0))])
 def test_edges_that_are_held_out_of_the_plane_and_loads_in_it_have_no_note(tmp_path, axes, towards):
     scene = beam(tmp_path, axes)
-    scene.accelerate(0.5, towards=towards, **QUICKLY)
+    scene.lean(0.2, towards=towards)
     assert said(scene, tmp_path) == (None, None, 0)
 
 
@@ -70,5 +70,5 @@ def test_the_thrust_of_what_a_wall_carried_before_does_not_count(tmp_path):
     """A flat arch under its weight, and a small load across."""
     scene = beam(tmp_path, gravity=200)
     before, _ = scene.model.supports.alongWall((0, 1, 0))
-    scene.accelerate(0.1, towards=(0, 1, 0), **QUICKLY)
+    scene.lean(0.1, towards=(0, 1, 0))
     assert before > 100 and said(scene, tmp_path) == (None, None, 0)

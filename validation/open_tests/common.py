@@ -66,6 +66,23 @@ def section(ft, GfI, kn, depth, normal=0.0):
     return max(moment(tilt) for tilt in np.geomspace(0.1, 300, 400) * u0 / depth)
 
 
+def torque(bed, sides, normal=0.0):
+    """The largest torque [N m] of a bed joint of these sides [m] between two rigid bricks, under a
+    normal stress [Pa]: an integral of the law by itself. Cohesion softens with the slip, friction
+    stays."""
+    c, ks = bed.cohesion, bed.shearStiffness
+    x, y = ((np.arange(400) + 0.5) / 400 * side - side / 2 for side in sides)
+    r = np.hypot(*np.meshgrid(x, y))
+    s0, brittleness = (c + bed.friction * normal) / ks, c**2 / (ks * bed.modeIIFractureEnergy)
+
+    def at(twist):
+        slip = twist * r
+        bond = c * np.exp(-brittleness * np.maximum(slip / s0 - 1, 0))
+        return (np.minimum(ks * slip, bond + bed.friction * normal) * r).mean()
+
+    return sides[0] * sides[1] * max(map(at, np.geomspace(0.1, 300, 200) * s0 / max(sides)))
+
+
 def number(value):
     """A cell: numbers with three digits."""
     return f"{value:.3g}" if isinstance(value, float) else str(value)

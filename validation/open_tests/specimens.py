@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # yade leaves it out
-from common import boundOf, finished, main, section, words  # noqa: E402
+from common import boundOf, finished, main, section, torque, words  # noqa: E402
 import panels  # noqa: E402
 from masonry import MasonryJoint, MasonryMat, Scene, bricks, materials  # noqa: E402
 
@@ -132,6 +132,60 @@ def wallette(parallel, bound=False, masonry=None, unit=UNIT, most=0.6e6):
     return 1e-3 * share * found
 
 
+# -- torsion ---------------------------------------------------------------------------------------
+
+LEVER = 0.2  # [m] of the bars that twist the upper brick
+
+
+def joined(masonry, kind, material, like):
+    """A masonry with blocks of a kind of their own material, which elastic joints, as stiff as
+    another joint, hold together and to the bricks."""
+    seat = dict(
+        elastic=True, normalStiffness=like.normalStiffness, shearStiffness=like.shearStiffness
+    )
+    masonry.joints["seat"] = MasonryJoint(name="seat", **seat)
+    masonry.units[kind] = material
+    masonry.choose = lambda one, two, geom: (
+        "seat" if one and two and kind in (one.kind, two.kind) else None
+    )
+    return masonry
+
+
+def torsion(stress, most=1e3):
+    """Cells of two clay bricks that overlap by half a unit, the upper one twisted about the
+    vertical until the torque [N m] is not held, by bars at both of its ends."""
+    length, thick, high = panels.UNIT
+    sides, masonry = (length / 2, thick), panels.masonryOf()
+    bed = masonry.joints["bed"]
+    blocks = bricks.stack(2, (*sides, high))
+    for x in (-LEVER, sides[0]):
+        low, top = (x, 0, 1.25 * high), (x + LEVER, thick, 1.75 * high)
+        blocks += bricks.block(low, top, part="bar", kind="bar")
+    steel = MasonryMat(label="bar", young=200e9, poisson=0.0, density=7850)
+    scene = Scene(
+        "torsion",
+        blocks,
+        joined(masonry, "bar", steel, bed),
+        gravity=0,
+        plane=False,
+        arguments=words("torsion", *POINTS),
+    )
+    scene.platen("bottom")
+    if stress:
+        scene.press(scene.platen("top", rotation="free", height=0.02), stress)
+    bars = [scene.handle(n) for n in (2, 3)]
+    scene.settle()
+    force = most / (sides[0] + LEVER)
+    scene.grow(dict(zip(bars, ((0, -force, 0), (0, force, 0)))), over=0.5, within=0.01)
+    found = most * scene.factor
+    scene.finish()
+    short, long = sorted(sides)
+    elastic = (short * long) ** 2 / (3 * long + 1.8 * short)  # [m³] Saint-Venant, as in AS 3700
+    willis = (1.6 * panels.WRENCH + 0.9 * stress) * elastic
+    own = torque(bed, sides, stress)
+    return rowOf("torque N m", found, f"integral {own:.4g}", f"Willis {willis:.4g}")
+
+
 # -- diagonal compression --------------------------------------------------------------------------
 
 SIDES, SHOE, PLATE = (
@@ -157,15 +211,8 @@ def diagonal(bound=False):
     """The force along the diagonal of a panel [kN]: a run, or limit analysis."""
     panel = bricks.Wall(SIDES[0], SIDES[1])
     blocks = panel + shoe((0, 0), -1) + shoe(SIDES, 1)
-    masonry = materials.calciumSilicate()
-    seat = dict(
-        elastic=True, normalStiffness=BED.normalStiffness, shearStiffness=BED.shearStiffness
-    )
-    masonry.joints["seat"] = MasonryJoint(name="seat", **seat)
-    masonry.units["shoe"] = MasonryMat(label="steel", young=200e9, poisson=0.0, density=7850)
-    masonry.choose = lambda one, two, geom: (
-        "seat" if one and two and "shoe" in (one.kind, two.kind) else None
-    )
+    steel = MasonryMat(label="steel", young=200e9, poisson=0.0, density=7850)
+    masonry = joined(materials.calciumSilicate(), "shoe", steel, BED)
     more = ("--preset", "bound") if bound else ("--rate", "5")
     scene = Scene("diagonal", blocks, masonry, gravity=0, arguments=words("diagonal", *more))
     for n in (-4, -3):
@@ -252,6 +299,9 @@ CASES = {
     "wallette, parallel": lambda: bent(True),
     "wallette, perpendicular": lambda: bent(False),
     "diagonal compression": compressed,
+    "torsion of an overlap": lambda: torsion(0.0),
+    "torsion of an overlap at 0.1 MPa": lambda: torsion(0.1e6),
+    "torsion of an overlap at 0.5 MPa": lambda: torsion(0.5e6),
     "clay wallette, parallel": lambda: bentClay(True),
     "clay wallette, perpendicular": lambda: bentClay(False),
     "clay wallette, perpendicular, bricks do not crack": lambda: bentClay(False, unit_ft=None),

@@ -217,7 +217,9 @@ def hold(
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
     :param name: in curve.csv; None: ``brick`` and its index
     :param axes: along which it is held, xyz, and about which, XYZ; a prop against a wall that leans
-        is ``"y"``; bricks turn freely about a line
+        is ``"y"``; bricks turn freely about a line. An edge of a panel along x is ``"y"`` where it
+        is hinged and ``"yZ"`` where it is clamped; ``x`` makes it an abutment, between two of which
+        the panel arches
     :param to: where a line from the point ``where`` ends [m]. Springs along ``axes`` hold each brick
         that has a part of it, at two points of this part
     :param stiffness: of each axis, over the length of the line [N/m²]; None: normal stiffness of
