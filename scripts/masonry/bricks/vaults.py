@@ -331,8 +331,6 @@ def _pointed(what, stones, span, thickness, rise, problems):
             *problems,
             f"a pointed one has a joint at its crown, so stones {stones} must be even",
         ]
-    elif max(x for pair in left for x, _ in pair) >= span / 2:
-        problems = [*problems, f"thickness {thickness:g} m leaves no space for {stones} stones"]
     refuse(what, problems)
     outer = math.sqrt((radius + thickness) ** 2 - beside**2)
     right = [tuple((span - x, z) for x, z in pair) for pair in reversed(left)]

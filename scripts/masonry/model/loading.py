@@ -120,9 +120,12 @@ class Loading:
             self.loads[label].force = force * smooth(x)
         self.structure.connectors.grow(smooth(x))
 
-    def deadLoads(self):
-        """Pairs of MasonryLoad and its force when it has grown [N]."""
+    def deadLoads(self, lifts=True):
+        """Pairs of MasonryLoad and its force when it has grown [N]; ``lifts``: also those of
+        platens of another weight."""
         for label, load in self.loads.items():
+            if label.endswith(LIFT) and not lifts:
+                continue
             grown = load.force if self.grown else self._grown.get(label, load.force)
             yield load, grown
 
@@ -244,19 +247,6 @@ class Loading:
         """Displacement of the bricks at the followed platen along the load since it began [m], or
         0."""
         return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
-
-    def drift(self):
-        """:meth:`masonryAlong` over :meth:`heights` [-], 0 where these are none."""
-        height = self.followed and self.heights(self.followed, self.direction)[1]
-        return self.masonryAlong() / height if height else 0.0
-
-    def heights(self, target, direction):
-        """Heights of the recorded point of a target, and of its bricks, above the lowest brick [m];
-        None of one that is not above it, or if the direction is not horizontal."""
-        found = target.recorded[2], self.supports.driftHeight(target)
-        sways = abs(direction[2]) < 1e-9
-        above = [z - self.description.low[2] for z in found]
-        return [h if sways and h > 0 else None for h in above]
 
     def alongNow(self):
         """Displacement of the followed point along the load since it began [m]."""
