@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A dry dome whose lantern becomes heavier until the dome falls.
 
-It carries 19.8 kN beside the weight of the lantern; statics of a lune, whose stones press on their
+It carries 19.7 kN beside the weight of the lantern; statics of a lune, whose stones press on their
 neighbours but do not pull, have 19.93 kN. It takes about 30 s.
 """
 
