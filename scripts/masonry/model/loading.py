@@ -68,13 +68,7 @@ class Loading:
         velocity under the loads that act before it."""
         targets = [target for target in self.description.targets.values() if target.loaded]
         for target in targets:
-            if target.pressed is not None:
-                yield MasonryLoad(label=f"{target.name}_press", **_on(target))
-            if target.force is not None:
-                yield MasonryLoad(label=f"{target.name}_force", **_on(target))
-            if target.weight is not None:
-                middle = [(a + b) / 2 for a, b in zip(*target.box)]
-                yield MasonryLoad(label=target.name + LIFT, **{**_on(target), "point": middle})
+            yield from _deadLoadsOn(target)
         for n, (brick, _, point) in enumerate(self.description.winds):
             on = dict(body=self.ids[brick], point=point)
             yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
@@ -321,6 +315,16 @@ class Loading:
 def _on(target):
     """Attributes of a load on a target. A brick keeps its numerical damping until it is driven."""
     return dict(body=target.body, point=target.point, damped=target.brick is not None)
+
+
+def _deadLoadsOn(target):
+    if target.pressed is not None:
+        yield MasonryLoad(label=f"{target.name}_press", **_on(target))
+    if target.force is not None:
+        yield MasonryLoad(label=f"{target.name}_force", **_on(target))
+    if target.weight is not None:
+        middle = [(a + b) / 2 for a, b in zip(*target.box)]
+        yield MasonryLoad(label=target.name + LIFT, **{**_on(target), "point": middle})
 
 
 # -- drives of pushes ------------------------------------------------------------------------------
