@@ -218,7 +218,7 @@ def hold(
     :param axes: along which it is held, xyz, and about which, XYZ; a prop against a wall that leans
         is ``"y"``; bricks turn freely about a line
     :param to: where a line from the point ``where`` ends [m]. Springs along ``axes`` hold each
-        brick that has a part of it, at two points of this part
+        brick that has a part of it, at two points of this part; these bricks are rigid in any case
     :param stiffness: of each axis, over the length of the line [N/m²]; None: normal stiffness of
         support joints times the least thickness of the brick
     """
