@@ -150,8 +150,8 @@ def gallery():
     from scipy import ndimage
 
     paths = sorted(glob.glob(os.path.join(SCRIPTS, "gallery", "*.png")))
-    figure, grid = plt.subplots(4, 6, figsize=(WIDTH, 6.2))
-    figure.subplots_adjust(0.01, 0.005, 0.99, 0.965, wspace=0.08, hspace=0.17)
+    figure, grid = plt.subplots(5, 6, figsize=(WIDTH, 7.7))
+    figure.subplots_adjust(0.01, 0.005, 0.99, 0.97, wspace=0.08, hspace=0.17)
     for axes, path in zip(grid.flat, paths):
         image = np.asarray(Image.open(path).convert("RGB")).astype(int)
         isDrawn = (np.ptp(image, axis=2) > 12) & (image.min(axis=2) > 60)

@@ -214,7 +214,7 @@ def joined():
 
 def sceneOptions():
     """The options that a scene takes as keywords, with values that they may have."""
-    aside = {"resume", "preset", "history", "out", "lean", "quick", "no_vtk"}
+    aside = {"resume", "preset", "history", "out", "lean", "quick", "no_vtk", "ratios"}
     found = {n: [] if o.several else o.default for n, o in options.OPTIONS.items()}
     return {n: value for n, value in found.items() if n not in aside}
 
@@ -287,6 +287,10 @@ CALLS = {
     "bricks.Room": (getattr(bricks, "Room"), dict(length=0.88, width=0.88, height=0.243)),
     "bricks.Arch": (bricks.Arch, dict(depth=0.5, skewback=0.3, **RING)),
     "bricks.BarrelVault": (bricks.BarrelVault, dict(length=1.0, rows=2, **RING)),
+    "bricks.CrossVault": (
+        bricks.CrossVault,
+        dict(span=3.0, thickness=0.2, stones=6, rows=2, length=2.0, pier=0.3),
+    ),
     "bricks.Dome": (
         bricks.Dome,
         dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0),
@@ -321,6 +325,7 @@ CALLS = {
     "Bricks.where": (WALL.where, dict(function=lambda block: True)),
     "Bricks.within": (WALL.within, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "Bricks.cut": (WALL.cut, dict(point=(0.1, 0, 0), normal=LEVEL)),
+    "Bricks.alongLine": (WALL.alongLine, dict(begin=(0, 0, 0), end=(0, 0, 0.2))),
     "Bricks.freeFaces": (WALL.freeFaces, dict(direction=(0, 1, 0))),
     "capacity.assess": (
         capacity.assess,

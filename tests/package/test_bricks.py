@@ -319,6 +319,11 @@ def test_a_room_interlocks(unit, n, m, courses, halves):
     area = n * l * m * l - (n * l - 2 * t) * (m * l - 2 * t)
     assertFits(house, area * courses * h, (0, 1))
     assert {b.part for b in house} == {"front", "right", "back", "left"}
+    # three walls are a U
+    area -= (n * l - 2 * t) * t
+    bent = Room(n * l, m * l, courses * h, unit, back=None, halves=halves)
+    assertFits(bent, area * courses * h, (0, 1))
+    assert {b.part for b in bent} == {"front", "right", "left"}
 
 
 @mark.parametrize(

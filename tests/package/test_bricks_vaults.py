@@ -3,7 +3,8 @@
 that fit."""
 
 from usual import *
-from masonry.bricks import Arch, BarrelVault, Dome
+from masonry.bricks import Arch, BarrelVault, Bricks, CrossVault, Dome
+from collections import Counter
 from scipy.spatial import ConvexHull
 
 few = settings(max_examples=40)
@@ -153,8 +154,96 @@ def test_stones_of_a_staggered_dome_cover_the_joints_below():
         (lambda: Arch(0.2, 0.3, 1, radius=2), "1 voussoirs are too few for 180°"),
         (lambda: Dome(3, 0.3, 4, 2), "stones 2 must be at least 3"),
         (lambda: Dome(3, 0.3, 4, 9, oculus=3.5), "smaller than the springing's radius"),
+        (lambda: Dome(3, 0.3, 4, 9, lantern=1), "needs an oculus that is wider than its wall"),
+        (lambda: Arch(0.2, 0.3, 15, span=3, rise=2), "stones 15 must be even"),
+        (lambda: Arch(0.2, 0.3, 15, radius=3, rise=2), "rise .* needs span"),
+        (lambda: CrossVault(3, 0.2, 9, 4, pier=0.1), "pier 0.1 m must be at least the thickness"),
     ],
 )
 def test_an_impossible_vault_is_refused(make, said):
     with raises(ValueError, match=said):
         make()
+
+
+@few
+@given(sizes, some.floats(0.5, 2.0), some.floats(0.03, 0.3), some.integers(2, 20), some.booleans())
+def test_a_pointed_arch_has_its_span_rise_and_thickness(span, tall, share, half, skewed):
+    """Inner corners lie on two arcs about points of the springing line, outer ones on two that are
+    ``thickness`` larger."""
+    rise, thickness = (0.5 + tall) * span, share * span / half**0.5
+    skewback = thickness if skewed else None
+    arch = Arch(thickness, 0.3, 2 * half, span=span, rise=rise, skewback=skewback)
+    stones = arch[: 2 * half]
+    radius = (span**2 / 4 + rise**2) / span
+    for n, b in enumerate(stones):
+        centre = radius if n < half else span - radius
+        far = [math.hypot(x - centre, z) for x, _, z in b.corners]
+        assert sum(abs(r - radius) < 1e-9 * radius for r in far) == 4
+        assert sum(abs(r - radius - thickness) < 1e-9 * radius for r in far) == 4
+    assert max(min(c[2] for c in b.corners) for b in (stones[0], stones[-1])) == 0
+    crown = [c[2] for c in stones[half - 1].corners if abs(c[0] - span / 2) < 1e-9 * span]
+    assert min(crown) == approx(rise)
+    assert len(arch.joints()) == len(arch) - 1
+    assert [p for p in arch.problems() if "overlap" in p or "gap" in p or "no joint" in p] == []
+
+
+def test_a_rise_up_to_half_the_span_is_that_of_a_circle():
+    by = dict(thickness=0.2, depth=0.3, stones=9, span=3.0)
+    rise = 1.5 * math.tan(math.radians(22.5))
+    for one, two in (
+        (Arch(rise=rise, **by), Arch(angle=90, **by)),
+        (Arch(rise=1.5, **by), Arch(**by)),
+    ):
+        assert np.allclose([b.corners for b in one], [b.corners for b in two], atol=1e-12)
+
+
+@few
+@given(some.integers(2, 9), some.integers(2, 5), some.booleans(), some.integers(0, 2))
+def test_webs_of_a_cross_vault_meet_in_its_diagonals(stones, rows, cloister, shape):
+    """Its volume is that of strips along the webs: their area times the length between the diagonal
+    and the edge, or between both diagonals."""
+    span, thickness, pier, length = 3.0, 0.15, 0.4, 3.6
+    rise = (None, 0.9, 2.0)[shape]
+    stones += stones % 2 if shape == 2 else 0
+    stones = max(stones, 4)
+    how = dict(rise=rise, length=length, cloister=cloister)
+    vault = CrossVault(span, thickness, stones, rows, pier=pier, **how)
+    expected = 0.0
+    for b in Arch(thickness, 1.0, stones, span=span, rise=rise):
+        for part in Bricks([b]).cut((span / 2, 0, 0), (1, 0, 0)):
+            (x, _, _), volume = middleOf(part), Bricks([part]).volume
+            away = abs(x - span / 2)
+            expected += volume * 2 * (2 * away if cloister else 2 * (span / 2 + pier - away))
+    assert vault.volume == approx(expected * length / span, rel=1e-9)
+    assert vault.problems() == []
+    high = Arch(thickness, 1.0, stones, span=span, rise=rise).high[2]
+    assert vault.high[2] == approx(high)
+    # a brick at a diagonal is in both webs
+    counts = Counter(b.brick for b in vault)
+    corners = 4 * (stones // 2)
+    assert Counter(counts.values())[2] == corners
+    assert Counter(counts.values())[4] == stones % 2
+
+
+def middleOf(block):
+    """The centre of volume of a block [m]."""
+    points = np.array(block.corners)
+    hull, inner = ConvexHull(points), points.mean(axis=0)
+    parts = [points[s] - inner for s in hull.simplices]
+    volumes = [abs(np.linalg.det(p)) for p in parts]
+    return inner + sum(v * p.sum(axis=0) / 4 for v, p in zip(volumes, parts)) / sum(volumes)
+
+
+@mark.parametrize("staggered", [False, True])
+def test_a_lantern_closes_the_bed_of_the_oculus(staggered):
+    plain, dome = (Dome(2.0, 0.15, 6, 12, 0.4, staggered=staggered, lantern=h) for h in (None, 0.5))
+    assert dome[: len(plain)] == plain and dome.problems() == []
+    assert dome.high[2] == approx(plain.high[2] + 0.5 + 0.15)
+    ring = dome.where(lambda b: b.part == "lantern")
+    assert len({b.brick for b in ring}) == 13
+    # trapezoids between two regular polygons on a cone
+    inner, n = 0.4, 24 if staggered else 12
+    outer, angle = inner * 2.15 / 2, math.asin(inner / 2)
+    slant = math.hypot((outer - inner) * math.cos(math.pi / n), 0.15 * math.cos(angle))
+    bed = [j.area for j in dome.joints() if j.first < len(plain) <= j.second]
+    assert sum(bed) == approx(n * math.sin(math.pi / n) * (inner + outer) * slant)

@@ -77,3 +77,28 @@ def test_what_a_line_cannot_be_is_refused_before_the_first_step(tmp_path):
     }.items():
         with raises(ValueError, match=words):
             scene.hold(**settings)
+
+
+def test_ends_of_a_panel_are_hinges_on_lines_and_clamped_at_middles(tmp_path):
+    """5 q L⁴/384 E I against q L⁴/384 E I: middles of whole and half bricks are 55 mm apart."""
+    bend, (length, thickness, high) = {}, (2.2, UNIT[1], 4 * UNIT[2])
+    wall = bricks.Wall(length, high, halves=False)
+    for how in ("line", "middles"):
+        glue = materials.dry(normalStiffness=1e10)
+        for joint in glue.joints.values():
+            joint.elastic = True
+        scene = lean(tmp_path / how, wall, glue, plane=False, gravity=0)
+        for x, axes in ((0, "xyz"), (length, "y")):
+            if how == "line":
+                scene.hold((x, thickness / 2, 0), axes=axes, to=(x, thickness / 2, high))
+            else:
+                at = lambda b: min(abs(b.low[0] - x), abs(b.high[0] - x)) < 1e-6
+                ends = [n for n, b in enumerate(wall) if at(b)]
+                for n in ends:
+                    scene.hold(n, axes=axes)
+        scene.watch((length / 2, thickness / 2, high / 2), "middle")
+        scene.wind(1e3, (0, 1, 0))
+        scene.settle(longest=5)
+        bend[how] = scene.curve()["middle_y_mm"][-1]
+        scene.finish()
+    assert bend["line"] / bend["middles"] == approx(5, rel=0.1)

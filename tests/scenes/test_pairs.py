@@ -77,6 +77,7 @@ class Drawn:
         self.springs = pick.choice([None, None, {"x": 5e7}, {"z": 2e8, "Y": 1e7}])
         self.top = pick.choice(["free", "held", "handle"])
         self.tied, self.sprung = pick.random() < 0.4, pick.random() < 0.3
+        self.lined = seed % 4 == 0
         turns = [MIRROR, np.eye(3, dtype=int)] + [TURN, TURN @ MIRROR] * (not self.plane)
         self.place = Place(pick.choice(turns), pick.choice([NOTHING, (2.0, -3.0, 1.5)]))
         self.options = pick.choice(OPTIONS if elastic else STIFF)
@@ -88,7 +89,7 @@ class Drawn:
         self.area = (SHAPES[self.shape][-1][2] - SHAPES[self.shape][-1][0]) * DEPTH
 
     def words(self):
-        extras = [n for n in ("tied", "sprung", "plane", "functors") if getattr(self, n)]
+        extras = [n for n in ("tied", "sprung", "lined", "plane", "functors") if getattr(self, n)]
         where = self.place.turn.tolist(), self.place.away.tolist()
         built = self.kind, self.shape, f"top {self.top}", self.springs, *extras, self.options
         return f"seed {self.seed}: {built}, {[n for n, _ in self.said]}, {where}"
@@ -273,6 +274,10 @@ class Drawn:
         if self.sprung:
             stiff = np.abs(place.along((2e6, 0, 1e6)))
             scene.spring(0, stiffness=tuple(stiff.tolist()), name="soft")
+        if self.lined:  # the lower edge of the side of the highest block
+            x, z = SHAPES[self.shape][-1][:2]
+            begin, end = (place.at((x, y, z)) for y in (0, DEPTH))
+            scene.hold(begin, "line", place.axes("x"), to=end, stiffness=1e7)
         scene.watch(0, name="first")
         return scene, top
 
@@ -325,7 +330,7 @@ def rest(scene):
 
 #: Columns of what led there.
 PATH = re.compile(
-    "time_s|displacement_mm|(base|top)_shear_kN|vertical_mm|rotation_mrad|load_factor|masonry.*"
+    "time_s|displacement_mm|(base|top)_shear_kN|vertical_mm|rotation_mrad|load_factor|masonry.*|drift.*"
     "|balance_error|(external|gravity|refining|kinetic|damping|impacts|dissipated.*)_J|largest_.*"
 ).fullmatch
 

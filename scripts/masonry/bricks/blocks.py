@@ -277,18 +277,19 @@ class Bricks:
         :param begin: of the line [m], as ``end``
         """
         solids, found = self._convex("alongLine"), []
-        begin, way = np.array(begin), np.subtract(end, begin)
+        begin, along = np.array(begin), np.subtract(end, begin)
+        length = np.linalg.norm(along)
         for n, thickness in enumerate(solids.thicknesses()):
             group, row = solids.of(n)
-            normals, width = group.normals[row], COINCIDENT * solids.diagonal[n]
-            room, speed = group.offsets[row] + width - normals @ begin, normals @ way
-            with np.errstate(divide="ignore", invalid="ignore"):
-                at = room / speed
-            flat = abs(speed) < 1e-9 * np.linalg.norm(way)
-            low = at[(speed < 0) & ~flat].max(initial=0.0)
-            high = at[(speed > 0) & ~flat].min(initial=1.0)
-            if (room[flat] >= 0).all() and (high - low) * np.linalg.norm(way) > 10 * width:
-                ends = tuple(tuple(map(float, begin + t * way)) for t in (low, high))
+            width = COINCIDENT * solids.diagonal[n]
+            inside = group.offsets[row] + width - group.normals[row] @ begin
+            slope = group.normals[row] @ along
+            enters, leaves = slope < -1e-9 * length, slope > 1e-9 * length
+            low = (inside[enters] / slope[enters]).max(initial=0.0)
+            high = (inside[leaves] / slope[leaves]).min(initial=1.0)
+            beside = (inside[~(enters | leaves)] < 0).any()
+            if not beside and (high - low) * length > 10 * width:
+                ends = tuple(tuple(map(float, begin + t * along)) for t in (low, high))
                 found.append((n, ends, float(thickness)))
         return found
 

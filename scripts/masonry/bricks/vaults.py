@@ -145,14 +145,12 @@ def CrossVault(
     if pier is not None and pier < thickness:
         refuse("vault", [f"pier {pier:g} m must be at least the thickness, {thickness:g} m"])
     width = (span / 2 if cloister else edge) / rows
-    pieces = []  # course, key of the brick, corners in the web about the x or y axis
+    pieces = []  # of one web: course, diagonal at its end, corners
     for course in range(stones // 2 if cloister else 0, stones):
         section = [(x - span / 2, z) for x, z in points[course] + points[course + 1]]
         level, keyed = min(course, stones - 1 - course), 2 * course == stones - 1
-        if keyed and cloister:
-            section[:2] = [(0.0, z) for _, z in section[:2]]
-        elif keyed:
-            section[2:2] = [(0.0, z) for _, z in section[:2]]
+        if keyed:  # half of it in a cloister vault
+            section[2 * (not cloister) : 2] = [(0.0, z) for _, z in section[:2]]
         near, far = (f(abs(x) for x, _ in section) for f in (min, max))
         shift = 0.5 * (level % 2)
         if cloister:
@@ -169,23 +167,21 @@ def CrossVault(
                     y = min(max(y, -abs(x)), abs(x)) if cloister else max(y, abs(x))
                     if x or not (keyed and y):
                         corners[x, y, z] = None
-            # the diagonal at its ends, counted from that of x and y > 0 on
-            corner = None
-            if keyed and (cloister or n == 0):
-                corner = "key"
-            elif cloister and n in (0, len(ends) - 2):
-                corner = 3 if n == 0 else 0
+            # counted from that of x and y > 0 on
+            diagonal = None
+            if cloister and n in (0, len(ends) - 2):
+                diagonal = 3 if n == 0 else 0
             elif n == 0:
-                corner = 0 if section[0][0] + section[2][0] > 0 else 1
-            pieces.append((level, corner, tuple(corners)))
+                diagonal = int(2 * course < stones)
+            pieces.append((level, diagonal, keyed, tuple(corners)))
     bricks, blocks, stretch = {}, [], (length or span) / span
     for turn in range(4):
         cos, sin = cosSin(turn, 0.0)
-        for n, (level, corner, corners) in enumerate(pieces):
-            key = (turn, n)
-            if corner is not None:
-                key = (level, corner if corner == "key" else (corner + turn) % 4)
-            number = bricks.setdefault((corner is None, *key), len(bricks))
+        for n, (level, diagonal, keyed, corners) in enumerate(pieces):
+            key = n, turn, False
+            if diagonal is not None:
+                key = level, 0 if keyed else (diagonal + turn) % 4, True
+            number = bricks.setdefault(key, len(bricks))
             turned = ((cos * x - sin * y, (sin * x + cos * y) * stretch, z) for x, y, z in corners)
             blocks.append(Block(tuple(turned), number, part, level, "voussoir"))
     return Bricks(blocks)
@@ -331,8 +327,6 @@ def _pointed(what, stones, span, thickness, rise, problems):
             *problems,
             f"a pointed one has a joint at its crown, so stones {stones} must be even",
         ]
-    elif max(x for pair in left for x, _ in pair) >= span / 2:
-        problems = [*problems, f"thickness {thickness:g} m leaves no space for {stones} stones"]
     refuse(what, problems)
     outer = math.sqrt((radius + thickness) ** 2 - beside**2)
     right = [tuple((span - x, z) for x, z in pair) for pair in reversed(left)]

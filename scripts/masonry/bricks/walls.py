@@ -215,7 +215,7 @@ def Room(
     unit: Sides = UNIT,
     front: Openings = (),
     right: Openings = (),
-    back: Openings = (),
+    back: Openings | None = (),
     left: Openings = (),
     courses: Courses | None = None,
     halves: bool = True,
@@ -226,7 +226,8 @@ def Room(
 
     :param length: along x, ``width``: along y, measured outside [m]; whole units, at least 3
     :param front: openings of this wall, as ``right``, ``back`` and ``left``; x is measured along x
-        or y from the outer edge of the corner nearer to the origin
+        or y from the outer edge of the corner nearer to the origin. ``back=None``: no wall, so that
+        three make a U
 
     Others are as for :func:`Wall`.
     """
@@ -240,11 +241,12 @@ def Room(
     near = (0.0, unit[1])
     far = [(end - unit[1], end) for end in (one * unit[0] / 4, two * unit[0] / 4)]
     lay = functools.partial(_leaf, levels, unit, halves)
+    ends = (1, 1) if back is not None else (1, None)
     return _joined(
         lay(one, "front", front, near, meets=(0, 0)),
-        _along(lay(two, "right", right, far[0], meets=(1, 1))),
-        lay(one, "back", back, far[1], meets=(0, 0)),
-        _along(lay(two, "left", left, near, meets=(1, 1))),
+        _along(lay(two, "right", right, far[0], meets=ends)),
+        *([] if back is None else [lay(one, "back", back, far[1], meets=(0, 0))]),
+        _along(lay(two, "left", left, near, meets=ends)),
     )
 
 

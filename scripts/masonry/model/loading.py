@@ -71,13 +71,7 @@ class Loading:
         velocity under the loads that act before it."""
         targets = [target for target in self.description.targets.values() if target.loaded]
         for target in targets:
-            if target.pressed is not None:
-                yield MasonryLoad(label=f"{target.name}_press", **_on(target), **_machineOf(target))
-            if target.force is not None:
-                yield MasonryLoad(label=f"{target.name}_force", **_on(target))
-            if target.weight is not None:
-                middle = [(a + b) / 2 for a, b in zip(*target.box)]
-                yield MasonryLoad(label=target.name + LIFT, **{**_on(target), "point": middle})
+            yield from _deadLoadsOn(target)
         for n, (brick, _, point) in enumerate(self.description.winds):
             on = dict(body=self.ids[brick], point=point)
             yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
@@ -123,9 +117,12 @@ class Loading:
             self.loads[label].force = force * smooth(x)
         self.structure.connectors.grow(smooth(x))
 
-    def deadLoads(self):
-        """Pairs of MasonryLoad and its force when it has grown [N]."""
+    def deadLoads(self, lifts=True):
+        """Pairs of MasonryLoad and its force when it has grown [N]; ``lifts``: also those of
+        platens of another weight."""
         for label, load in self.loads.items():
+            if label.endswith(LIFT) and not lifts:
+                continue
             grown = load.force if self.grown else self._grown.get(label, load.force)
             yield load, grown
 
@@ -248,19 +245,6 @@ class Loading:
         0."""
         return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
 
-    def drift(self):
-        """:meth:`masonryAlong` over :meth:`heights` [-], 0 where these are none."""
-        height = self.followed and self.heights(self.followed, self.direction)[1]
-        return self.masonryAlong() / height if height else 0.0
-
-    def heights(self, target, direction):
-        """Heights of the recorded point of a target, and of its bricks, above the lowest brick [m];
-        None of one that is not above it, or if the direction is not horizontal."""
-        found = target.recorded[2], self.supports.driftHeight(target)
-        sways = abs(direction[2]) < 1e-9
-        above = [z - self.description.low[2] for z in found]
-        return [h if sways and h > 0 else None for h in above]
-
     def alongNow(self):
         """Displacement of the followed point along the load since it began [m]."""
         return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
@@ -348,6 +332,16 @@ def _machineOf(target):
         friction=target.friction,
         guideStiffness=target.friction * load / GUIDE_TRAVEL,
     )
+
+
+def _deadLoadsOn(target):
+    if target.pressed is not None:
+        yield MasonryLoad(label=f"{target.name}_press", **_on(target), **_machineOf(target))
+    if target.force is not None:
+        yield MasonryLoad(label=f"{target.name}_force", **_on(target))
+    if target.weight is not None:
+        middle = [(a + b) / 2 for a, b in zip(*target.box)]
+        yield MasonryLoad(label=target.name + LIFT, **{**_on(target), "point": middle})
 
 
 # -- drives of pushes ------------------------------------------------------------------------------

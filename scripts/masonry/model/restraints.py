@@ -121,12 +121,14 @@ class Supports:
     def _faceAt(self, target):
         return None if isinstance(target, Pattern) else self._faces.get(target.name)
 
-    def driftHeight(self, target):
-        """Height of the points of :meth:`masonryMoved` [m]."""
-        face = self._faceAt(target)
-        if not face:
-            return target.recorded[2]
-        return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
+    def heights(self, target, direction):
+        """Heights of the recorded point of a target, and of the points of :meth:`masonryMoved`,
+        above the lowest brick [m]; None of one that is not above it, or if the direction is not
+        horizontal."""
+        face, z = self._faceAt(target), target.recorded[2]
+        of = sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face) if face else z
+        above = [level - self.description.low[2] for level in (z, of)]
+        return [h if h > 0 and abs(direction[2]) < 1e-9 else None for h in above]
 
     def applied(self):
         """Sum of the weights of what is free to follow them, and of the loads [N]."""

@@ -4,13 +4,12 @@
 from yade import O, Vector3
 from yade.wrapper import MasonryContacts, MasonryZones
 
-from .._masonry import connected
 from ..errors import Collapsed, Refused
 from ..terminal import say
 from ..bricks import boxCorners
 from . import threads
 from .bodies import placeBlock
-from .connecting import makeJoints
+from .connecting import connected, makeJoints
 from .connectors import Connectors
 from .engines import engine, engines
 from .loading import Loading, reactionOf

@@ -162,6 +162,13 @@ PUSH = [
     ),
 ]
 
+
+def _drift(reading):
+    loading, supports = reading.structure.loading, reading.structure.supports
+    height = loading.followed and supports.heights(loading.followed, loading.direction)[1]
+    return 100 * loading.masonryAlong() / height if height else 0.0
+
+
 #: Of a scene in which a platen moves.
 OF_PLATEN = [
     Column(
@@ -176,7 +183,7 @@ OF_PLATEN = [
         "percent",
         "this displacement over the height of these bricks' side, or of that point, above the"
         " lowest brick; 0 unless the push or load is horizontal",
-        lambda r: 100 * r.structure.loading.drift(),
+        _drift,
     ),
 ]
 #: Of a push that follows a history.

@@ -10,7 +10,7 @@ from ..arguments import ByName, shown, vector
 from ..numbers import columns
 from ..units import GRAVITY
 from ..errors import Refused
-from ..bricks.blocks import KINDS
+from ..bricks.blocks import KINDS, Bricks
 from .contact import Contact
 
 
@@ -193,6 +193,10 @@ class Description:
         if away > self.size(index):
             raise Refused(f"{point} m: no brick is near it, the nearest is {away:g} m away")
         return index, point
+
+    def alongLine(self, begin, end):
+        """As :meth:`masonry.bricks.Bricks.alongLine`."""
+        return Bricks(self.bricks).alongLine(begin, end)
 
     def middle(self, index):
         """Mean of the corners of a brick [m]."""

@@ -200,7 +200,7 @@ class ResultSummary:
         model = self.model
         period, weight, grown = self._freeVibration()
         loading = model.loading
-        recorded, drift = loading.heights(loading.control, loading.push.direction)
+        recorded, drift = model.supports.heights(loading.control, loading.push.direction)
         past = self.pushed.history
         return {
             "first_period_s": period / self.args.density_scaling**0.5 or None,

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated
 from ..arguments import vector as numbers
-from ..bricks import Bricks
 from ..errors import IN_PLANE, Refused, refuse
 from .targets import BrickAt, Part, Target
 from .ties import BUNDLES, MAX_STIFFNESS, End, Spring, Tie
@@ -73,8 +72,8 @@ def platen(
         or y it turns about its own middle. Its weight counts if it can move along z
     :param uplift: whether the soil carries no tension: ``z`` of ``springs`` is spread over the side
         of the platen, on which it also turns
-    :param weight: of the one at the top [N]; None: that of 1800 kg/m³, whose mass it has in any case.
-        The difference grows in :meth:`settle`, as a dead load
+    :param weight: of the one at the top [N]; None: that of 1800 kg/m³, whose mass it has in any
+        case. The difference grows in :meth:`settle`, as a dead load
     """
     bottom, plane = where == "bottom", description.plane
     level = _levelOf(description, bottom, part)
@@ -208,9 +207,9 @@ def hold(
 ) -> Target:
     """Hold a brick at its middle, or bricks along a line. They then move by :meth:`move` alone.
 
-    A brick that is held along y alone turns about its middle. Bricks whose middles lie beside one
-    another, as whole and half ones at the end of a wall, so clamp it; a line there, or along an edge,
-    lets it turn::
+    A brick turns about its middle if it is held along y alone. Whole and half bricks at the end of
+    a wall, whose middles are not above one another, so clamp it; held along a line or an edge it
+    turns::
 
         scene.hold((0, 0.05, 0), "side", "y", to=(0, 0.05, 2.5))
 
@@ -220,8 +219,8 @@ def hold(
         is ``"y"``; bricks turn freely about a line. An edge of a panel along x is ``"y"`` where it
         is hinged and ``"yZ"`` where it is clamped; ``x`` makes it an abutment, between two of which
         the panel arches
-    :param to: where a line from the point ``where`` ends [m]. Springs along ``axes`` hold each brick
-        that has a part of it, at two points of this part
+    :param to: where a line from the point ``where`` ends [m]. Springs along ``axes`` hold each
+        brick that has a part of it, at two points of this part; these bricks are rigid in any case
     :param stiffness: of each axis, over the length of the line [N/m²]; None: normal stiffness of
         support joints times the least thickness of the brick
     """
@@ -243,7 +242,7 @@ def _holdAlong(description, where, name, axes, to, stiffness):
     """Hold bricks along a line: see :func:`hold`."""
     begin, end = description.find(where)[1], tuple(map(float, to))
     along = [a for a in "xyz" if a in axes and not (description.plane and a == "y")]
-    parts = begin and Bricks(description.bricks).alongLine(begin, end)
+    parts = begin and description.alongLine(begin, end)
     problems = []
     if not begin:
         problems.append("a line begins at a point (x, y, z) [m]")

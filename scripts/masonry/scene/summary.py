@@ -110,8 +110,8 @@ def notePlatens(description, masonry):
         own = f", as {loadingBlock().density:g} kg/m³" if platen.weight is None else ""
         stiffness = masonry.joints["support"].normalStiffness
         say(
-            f"platen {platen.name}: weighs {1e-3 * weightOf(platen):.4g} kN{own} (weight= changes it);"
-            f" rigid on a support joint of {stiffness:.4g} Pa/m"
+            f"platen {platen.name}: weighs {1e-3 * weightOf(platen):.4g} kN{own}, which weight="
+            f" changes; rigid, on a support joint of {stiffness:.4g} Pa/m"
         )
 
 

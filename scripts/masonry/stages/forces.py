@@ -14,7 +14,6 @@ from yade import O, Vector3
 from ..arguments import Direction, Freedoms, Level, isNumber, number, shown, validatorOf
 from ..errors import Refused
 from ..model.load_names import nameOf
-from ..model.loading import LIFT
 from .bounds import findBound
 from ..scene.loads import Field, Force, Friction, Pressure, Stress
 from ..scene.loads import checkedForce, doubtPress, doubtWind, windForces
@@ -279,11 +278,7 @@ def grow(
         return _grow(scene, made[0], over, within)
     pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
     if dead:
-        pairs += [
-            (load, Vector3.Zero)
-            for load, _ in scene.model.loading.deadLoads()
-            if not load.label.endswith(LIFT)
-        ]
+        pairs += [(one, Vector3.Zero) for one, _ in scene.model.loading.deadLoads(lifts=False)]
     if not pairs:
         raise ValueError("grow: loads, pressure or dead must say what grows")
     forces: dict[str, Any] = {}
