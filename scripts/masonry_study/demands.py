@@ -13,6 +13,7 @@ Rows that failed or are missing are left out, and at a level with fewer than thr
 there is no quantile.
 """
 
+import copy
 import math
 import re
 
@@ -60,6 +61,25 @@ class Demands:
         #: of every record the intensities at which the structure stood, also where nothing was
         #: watched
         self.stood = [row[own].tolist() for row, own in zip(levels, stood)]
+
+    def apart(self, record, column):
+        """The records by what a column says of them, as the class of damage with which a shake
+        begins: Demands by the texts of the column, in their order. Records for which it says
+        nothing are left out. Raises Refused if it is not the same in all rows of a record."""
+        order, groups, each = np.nan_to_num(record.numbers(column)), {}, len(self.rows[0][0])
+        cells = record.cells[column]
+        for n, name in enumerate(self.names):
+            rows = [r for r in range(n * each, (n + 1) * each) if cells[r]]
+            if len({cells[r] for r in rows}) > 1:
+                raise Refused(f"--by {column}: it changes with the levels of record {name}")
+            for r in rows[:1]:
+                groups.setdefault((order[r], cells[r]), []).append(n)
+        found = {}
+        for key, own in sorted(groups.items()):
+            one = found[key[1]] = copy.copy(self)
+            for part in ("names", "rows", "fell", "stood"):
+                setattr(one, part, [getattr(self, part)[n] for n in own])
+        return found
 
     @property
     def levels(self):

@@ -118,15 +118,7 @@ def written(path, text):
 
 
 #: Prefixes of lines of a log that do not explain a failure.
-_CHATTER = (
-    "Yade: ",
-    "Running script",
-    "XMLRPC",
-    "TCP python",
-    "Welcome to",
-    "Using python",
-    "note: ",
-)
+_CHATTER = "Running script", "note: "
 _USAGE = re.compile(r"^usage: .*?: error: ", re.DOTALL | re.MULTILINE)  # of argparse
 _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 

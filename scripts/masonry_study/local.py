@@ -10,11 +10,11 @@ import subprocess
 import sys
 import time
 
-from masonry import background
+from masonry import background, host
 from masonry.errors import Interrupted, Unwritable
 from masonry.terminal import say
 from masonry.folders import inside
-from masonry.run import batch, warm
+from masonry.run import batch
 from masonry.run.progress import Progress
 from . import row
 from .gathering import Folder
@@ -119,7 +119,7 @@ class Local:
 
 
 def main(path, jobs):
-    warm.load()
+    host.load()
     try:
         Local(Folder(path), int(jobs)).run()
     except Interrupted:

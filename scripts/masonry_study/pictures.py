@@ -262,23 +262,29 @@ def _standing(intensities, demands):
     return tuple(map(list, zip(*found)))
 
 
-def fitted(path, fit, counts, xLabel, yLabel):
-    """A fitted fragility with its band, and the shares of the records at every level.
+def fitted(path, fits, xLabel, yLabel):
+    """Fitted fragilities with their bands, and the shares of the records at every level.
 
-    :param counts: list of (intensity, how many records have reached the limit, of how many)
+    :param fits: by the name of a group of records, empty if it is the only one: the fit, and a list
+        of (intensity, how many records have reached the limit, of how many)
     """
-    known = [(x, k / n) for x, k, n in counts if n]
-    x = max([fit.median.value, *(x for x, _ in known)])
-    x = 1.3 * x * np.arange(1, POINTS + 1) / POINTS
-    values, low, high = np.transpose([fit.probability(v) for v in x])
+    known = {name: [(x, k / n) for x, k, n in counts if n] for name, (_, counts) in fits.items()}
+    ends = [x for points in known.values() for x, _ in points]
+    x = 1.3 * max([fit.median.value for fit, _ in fits.values()] + ends)
+    x = x * np.arange(1, POINTS + 1) / POINTS
     with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
-        axis.fill_between(x, low, high, **BAND_STYLE, label=BAND_LABEL)
-        median, dispersion = fit.median.value, fit.dispersion.value
-        text = f"lognormal: median {median:.3g}, dispersion {dispersion:.3g}"
-        axis.plot(x, values, color="black", lw=1.2, label=text)
-        points = np.reshape(known, (-1, 2)).T
-        axis.plot(*points, "o", ms=4, color=LINE, label=f"share of {fit.records} records")
+        for n, (name, (fit, _)) in enumerate(fits.items()):
+            values, low, high = np.transpose([fit.probability(v) for v in x])
+            line, dot = (f"C{n}", f"C{n}") if name else ("black", LINE)
+            band = dict(BAND_STYLE, color=line, alpha=0.15) if name else BAND_STYLE
+            axis.fill_between(x, low, high, **band, label="" if n else BAND_LABEL)
+            median, dispersion = fit.median.value, fit.dispersion.value
+            text = f"{name or 'lognormal'}: median {median:.3g}, dispersion {dispersion:.3g}"
+            axis.plot(x, values, color=line, lw=1.2, label=text)
+            points = np.reshape(known[name], (-1, 2)).T
+            own = f"share of {fit.records} records"
+            axis.plot(*points, "o", ms=4, color=dot, label=own)
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
         drawing.finish(axis, xLabel, yLabel, loc="lower right")

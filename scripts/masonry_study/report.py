@@ -4,6 +4,7 @@
 /usr/bin/python3 -m masonry_study.report DIR
 /usr/bin/python3 -m masonry_study.report DIR --measure base_shear_end_kN --demand 90,100,110
 /usr/bin/python3 -m masonry_study.report DIR --limit 20          of an incremental dynamic analysis
+/usr/bin/python3 -m masonry_study.report DIR --by damage         a fragility for each class of damage
 
 The pictures go into the folder of the study.
 """
@@ -200,10 +201,10 @@ def _cell(value):
     return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"
 
 
-def drawIncremental(demands, limit):
-    """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and
-    yield as :func:`draw`."""
-    measure = label(demands.intensityName)
+def drawIncremental(demands, groups, limit):
+    """Write the pictures of an incremental dynamic analysis, and the fragilities of its groups by
+    their names, also for OpenQuake. Yields as :func:`draw`."""
+    measure, reaches = label(demands.intensityName), reached(demands, limit)
 
     def curves(path):
         if not demands.measure:
@@ -215,15 +216,26 @@ def drawIncremental(demands, limit):
         }
         pictures.ida(path, demands.rows, demands.fell, quantiles, label(demands.measure), measure)
 
+    def fits():
+        found, why = {}, None
+        for name, one in groups.items():
+            try:
+                found[name] = one.fragility(limit)
+            except Refused as refused:
+                why = refused
+        if not found:
+            raise why or Refused("no record is in a group")
+        return found
+
     def fragility(path):
-        fit, text = demands.fragility(limit), f"probability: {reached(demands, limit)}"
-        pictures.fitted(path, fit, demands.counts(limit), measure, text)
+        found = {name: (fit, groups[name].counts(limit)) for name, fit in fits().items()}
+        pictures.fitted(path, found, measure, f"probability: {reaches}")
 
     def nrml(path):
-        fits = {os.path.basename(os.path.abspath(demands.directory)): demands.fragility(limit)}
+        folder = os.path.basename(os.path.abspath(demands.directory))
+        own = {f"{folder} {name}".strip(): fit for name, fit in fits().items()}
         state = "collapse" if limit is None else "limit"
-        about = demands.intensityName, state, reached(demands, limit), demands.levels[-1]
-        written(path, nrmlOf(fits, *about))
+        written(path, nrmlOf(own, demands.intensityName, state, reaches, demands.levels[-1]))
 
     makes = {"ida.png": curves, "fragility.png": fragility, "fragility.xml": nrml}
     yield from _drawn(demands.directory, makes)
@@ -243,6 +255,10 @@ OPTIONS = {
         "of an incremental dynamic analysis: the demand whose fragility is found; without it that"
         " of collapse. --measure is the demand, and --demand has intensities at which the"
         " probability is printed"
+    ),
+    "--by": (
+        "of an incremental dynamic analysis: a column that says one thing of all rows of a record,"
+        " as the class of damage with which they begin; each of its values has its own fragility"
     ),
 }
 
@@ -281,8 +297,8 @@ def isIncremental(directory):
 
 
 def _ofRows(record, args, limit, demands):
-    if limit:
-        raise Refused("--limit: this is no incremental dynamic analysis")
+    if limit or args.by:
+        raise Refused(f"--{'limit' if limit else 'by'}: this is no incremental dynamic analysis")
     measure = args.measure or record.measure(MEASURE)
     yield from (*table(record, measure), *modes(record), *statuses(record))
     if demands:
@@ -301,9 +317,15 @@ def _ofIncremental(record, args, limit, intensities):
         raise Refused(f"--demand {args.demand}: intensities must be above 0")
     limit = limit[0] if limit else None
     found = Demands(record, args.measure)
-    yield from (*incremental(found, limit, intensities), *statuses(record))
+    groups = {"": found}
+    if args.by:
+        groups = {f"{args.by} {v}": one for v, one in found.apart(record, args.by).items()}
+    for name, one in groups.items():
+        yield from [f"{name}:"] * bool(name)
+        yield from incremental(one, limit, intensities)
+    yield from statuses(record)
     if not args.no_pictures:
-        yield from drawIncremental(found, limit)
+        yield from drawIncremental(found, groups, limit)
 
 
 def _listed(option, text):

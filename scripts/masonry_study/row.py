@@ -26,8 +26,8 @@ import time
 if __name__ == "__main__":
     os.environ["OMP_NUM_THREADS"] = "1"  # which numpy reads
 
-from masonry import background
-from masonry.run import batch, warm
+from masonry import background, host
+from masonry.run import batch
 from masonry.errors import FolderLocked, NotResumed, Refused
 from masonry.terminal import say
 from masonry.folders import inside
@@ -124,9 +124,9 @@ class RowRunner:
         return status
 
     def _runScene(self, number, log):
-        warm.load()
+        host.load()
         env = {batch.VARIABLE: f"{self.folder.of(TABLE)}:{number + 1}"}
-        act = functools.partial(warm.runScript, self.script, [])
+        act = functools.partial(host.runScript, self.script, [])
         self._child = background.Program(act, log, env, os.path.dirname(self.script))
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)

@@ -137,8 +137,16 @@ scene.follow(top, path)
     assert "steps/s" not in done.stdout and "Traceback" not in done.stderr
 
 
-def test_options_for_the_record_of_one_shake_are_refused(tmp_path):
-    scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), None, "--scale", "2")
+def test_options_of_the_command_line_are_for_the_shake_that_follows(tmp_path, capsys):
+    stone = materials.dry(
+        friction=FRICTION, normalStiffness=1e11, shearStiffness=STIFFNESS, density=DENSITY
+    )
+    scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), stone, "--scale", "0.8")
+    scene.watch(0, name="slab")
     scene.settle()
-    with raises(ValueError, match="give records and scales here"):
-        scene.shakeAgain([pulse()], every=EVERY)
+    scene.shakeAgain([pulse()], every=EVERY, unit="m/s²")
+    assert "are for a shake() that follows" in capsys.readouterr().out
+    scene.shake(pulse(), EVERY, unit="m/s²")
+    ends = [a["value"] for a in scene.answers if a["name"] == "displacement_of_slab_x_at_the_end"]
+    slips = np.cumsum([slip(PULSE), slip(0.8 * PULSE)])
+    assert ends == approx(-slips, rel=0.05)

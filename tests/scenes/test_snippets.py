@@ -75,7 +75,7 @@ REPLACED = (
 BLOCKS = {
     "README.md": ["my_scene.py"],
     "scripts/CHECKPOINTS.md": ["checkpoint.py"],
-    "scripts/STUDIES.md": ["study.py", "ida.py", "couplets.py"],
+    "scripts/STUDIES.md": ["study.py", "ida.py", "cracked.py", "after.py", "couplets.py"],
     "scripts/WALL.md": ["my_wall.py"],
     "yade_plugin/FOR_YADE_USERS.md": ["joints.py"],
 }
@@ -86,6 +86,7 @@ SHORTER = {
         ("levels=[0.2, 0.4, 0.6, 0.9, 1.3, 1.8]", "levels=[0.2, 0.4]"),
         ('"parapet",', '"parapet", options={"quick": True},'),
     ],
+    "after.py": [("levels=[0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5]", "levels=[0.2]")],
     "couplets.py": [("unknown=", "runs=9,\n    unknown=")],
 }
 #: A record of the format of PEER: a sine that swells and fades, with another frequency in every

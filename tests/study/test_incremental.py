@@ -4,6 +4,7 @@ said of them."""
 
 from commands import *
 import hashlib
+import itertools
 import pathlib
 from xml.etree import ElementTree
 from masonry_study import Sa, Study, report, uniform
@@ -457,3 +458,42 @@ def test_the_usual_demand_is_that_of_the_largest_amount():
     values = {"shake_2_largest_x_mm": [-5.0, 1.0], "shake_2_largest_y_mm": [2.0, 3.0]}
     record = SimpleNamespace(measures=values, numbers=lambda name: np.array(values[name]))
     assert _usual(record) == "shake_2_largest_x_mm"
+
+
+# -- what is damaged already -----------------------------------------------------------------------
+
+
+def test_a_slab_that_has_slid_reaches_a_slide_earlier_and_each_class_has_its_fragility(tmp_path):
+    """Newmark's sliding block under rectangular pulses, after a main shock that moves half of them
+    by 17 mm."""
+    braked, main, limit = 0.3 * 9.81, 4.96, 27.0
+    slip = lambda a, seconds: 1e3 * 0.5 * (a - braked) * seconds**2 * a / braked
+    accelerations, lasting = [4, 5, 6, 7, 8], {"070": 0.07, "100": 0.1, "135": 0.135}
+    for name, seconds in itertools.product(lasting, "ab"):
+        values = ["0"] * 5 + ["1"] * round(lasting[name] / 0.002) + ["0"] * 75
+        head = ["# unit: m/s²", "# every: 0.002 s"]
+        (tmp_path / f"{seconds}{name}.txt").write_text("\n".join([*head, *values, ""]))
+    plan = dict(design="ida", records=["*.txt"], levels=[a / 9.81 for a in accelerations])
+    plan["vary"] = {"main": [0.0, main]}
+    path, out = tmp_path / "study.py", tmp_path / "out"
+    slab = os.path.join(HERE, "slab.py")
+    path.write_text(f"from masonry_study import *\nstudy = Study({slab!r}, **{plan})\n")
+    done(path, "--out", out, "--jobs", 2)
+    column = "shake_5_displacement_of_slab_x_at_the_end_mm"
+    groups = Demands(Record(out), column).apart(Record(out), "damage")
+    assert [len(one.names) for one in groups.values()] == [3, 3]
+    for one, moved in zip(groups.values(), (0, slip(main, 0.1))):
+        low, high = one.intervals(limit)
+        for name, below, at in zip(one.names, low, high):
+            reached = [moved + slip(a, lasting[name[1:]]) >= limit for a in accelerations]
+            first = reached.index(True)
+            assert at == approx(accelerations[first] / 9.81)
+            assert below == approx(accelerations[first - 1] / 9.81 if first else 0)
+    whole, cracked = (one.fragility(limit).median.value for one in groups.values())
+    assert cracked < 0.9 * whole
+    words = [str(out), "--measure", column, "--limit", str(limit)]
+    assert report.main([*words, "--by", "damage"]) == 0
+    space = "{http://openquake.org/xmlns/nrml/0.5}"
+    made = ElementTree.parse(out / "fragility.xml").iter(f"{space}fragilityFunction")
+    assert [one.get("id") for one in made] == [f"out_damage_{name}" for name in ("0_0", "1_0")]
+    assert report.main([*words, "--by", "scale"]) == 2

@@ -20,13 +20,13 @@ import json
 import os
 import pathlib
 import shutil
-from .. import background
+from .. import background, host
 from ..errors import NotAccurate, Refused
 from ..terminal import say
 from ..auxiliary import Auxiliary, addToLog
 from ..folders import check, inside, replaced
 from ..numbers.files import readRun
-from . import batch, warm
+from . import batch
 from .option_table import asOption
 from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, fidelityOf
 
@@ -284,7 +284,7 @@ class AuxiliaryRuns:
 def _runCompanion(script, words):
     global _isCompanion
     _isCompanion = True
-    return warm.runScript(script, words)
+    return host.runScript(script, words)
 
 
 # -- what is reported and asked --------------------------------------------------------------------

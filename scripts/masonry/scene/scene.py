@@ -293,14 +293,10 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        if not (
-            error
-            or self.limitAnalysisOnly
-            or any(word in SHAKES for word, _ in self.script.commands)
-        ):
+        if not (error or self.limitAnalysisOnly or self.script.has(SHAKES)):
             for option, default in (("record", None), ("scale", 1)):
                 if getattr(self.args, option, default) != default:
-                    say(f"warning: --{option} was not used: the scene was not shaken")
+                    say(f"warning: --{option} was not used: the scene was not shaken by shake()")
         with self.running.listening():
             done = end(self.running, self, error)
         if self.status and (done or not error):

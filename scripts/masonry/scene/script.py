@@ -129,6 +129,8 @@ class Script:
 
     def __init__(self):
         self.commands = []
+        self.aside = False  # whether no option of the command line is for the commands that follow
+        self._asides = set()  # places of these
         self._extendable = []  # for each command, the arguments that set its end
 
     def note(self, act, first, args, settings):
@@ -136,12 +138,21 @@ class Script:
 
     def add(self, word, arguments, extendable=()):
         """Add a command and its arguments as data; ``extendable`` names those that set its end."""
+        (self._asides.add if self.aside else self._asides.discard)(len(self.commands))
         self.commands.append([word, arguments])
         self._extendable.append(set(extendable))
 
     def isFirst(self, kinds):
-        *before, (last, _) = self.commands
-        return last in kinds and not any(command in kinds for command, _ in before)
+        """Whether the last command is the first of some kinds for which there are options."""
+        return self._placesOf(kinds) == [len(self.commands) - 1]
+
+    def has(self, kinds):
+        """Whether there was such a command, or those that follow are none."""
+        return self.aside or bool(self._placesOf(kinds))
+
+    def _placesOf(self, kinds):
+        words = enumerate(word for word, _ in self.commands)
+        return [at for at, word in words if word in kinds and at not in self._asides]
 
     def compare(self, before):
         """Refuse a script that differs from that of the run that is resumed. Returns whether it

@@ -77,9 +77,7 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
 
 def readable(scene, accelerations, every=None, direction=None, scale=1.0, unit=None, *_, **__):
     """Raise Refused for a record that cannot be read, unless the command line replaces it."""
-    replaced = scene.args.record is not None and not any(
-        command in SHAKES for command, _ in scene.script.commands
-    )
+    replaced = scene.args.record is not None and not scene.script.has(SHAKES)
     if not (replaced or scene.running.isResumed):
         _read(accelerations, every, scale, unit)
 
@@ -124,9 +122,9 @@ def shake(
     masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio. They end
     with the stage.
 
-    ``--record FILE`` replaces the record of the first shake of a scene, with its time between
-    samples, factor and unit, and ``--scale S`` makes that shake S times as strong. A record that
-    does not end at rest is named with its numbers; nothing is corrected.
+    ``--record FILE`` replaces the record of the first shake of a scene that is none of
+    :meth:`shakeAgain`, with its time between samples, factor and unit, and ``--scale S`` makes that
+    shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
 
     :param accelerations: a list, or the path of a file (:mod:`masonry.scene.accelerograms`); or
         three paths, of both horizontal components and the vertical one, upwards
@@ -247,7 +245,8 @@ def shakeAgain(
     """Shake a structure by one record after the other, as it was left by those before. After each
     it comes to rest, and its period and what remains are measured: stages :meth:`shake`,
     :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record, whose ``ended`` is
-    ``"at rest"``, or ``"moving"`` if it did not come to rest.
+    ``"at rest"``, or ``"moving"`` if it did not come to rest. A :meth:`shake` after them shakes
+    what they have damaged, and ``--record`` and ``--scale`` are for it.
 
     :param records: of each what :meth:`shake` takes
     :param every: time between two samples [s], and ``direction``: as in :meth:`shake`
@@ -258,17 +257,18 @@ def shakeAgain(
     :raises ValueError: if there are not as many scales as records
     """
     if scene.args.record is not None or scene.args.scale != 1:
-        raise Refused(
-            "shakeAgain: --record and --scale are for the one record of shake(); give records and"
-            " scales here"
-        )
+        say("note: shakeAgain: --record and --scale are for a shake() that follows")
     scales = [1.0] * len(records) if scales is None else scales
     if len(scales) != len(records):
         raise Refused(f"shakeAgain: {len(scales)} scales for {len(records)} records")
     ends, rows = [], []
     read = readableAll(scene, records, every, scales=scales, **how)
     for count, (one, scale) in enumerate(zip(records, scales), 1):
-        ends.append(shake(scene, one, every, direction, scale, **how))
+        scene.script.aside = True
+        try:
+            ends.append(shake(scene, one, every, direction, scale, **how))
+        finally:
+            scene.script.aside = False
         stages, rests = [scene.running.entered], COLLAPSED
         if ends[-1] != COLLAPSED:
             rests = settle(scene, longest=longest)
