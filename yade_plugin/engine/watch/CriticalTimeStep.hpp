@@ -23,25 +23,26 @@ class SceneStore;
 // yield let them drift.
 //
 // Mass-proportional damping, which acts on the mean velocity of a step, changes nothing of this. Stiffness-proportional
-// damping of the joints takes the velocity of half a step before. A mode of angular frequency w and damping ratio
-// d = stiffnessDamping w/2 is then stable up to (sqrt(1 + d²) - d) 2/w: the quadratic equation of its step has a root
-// of size 1 where (w dt/2)² + 2 d (w dt/2) = 1. The highest mode gives the least of these limits. It is taken as if all
-// of its stiffness were that of joints, which is on the safe side for deformable units.
-//
-// Where masses of deformable units are scaled (Zones::massScaling), M stands for the scaled masses. Damping takes
-// no more from a component of w than with the true masses, which are at most the scaled ones, so E falls there, too.
-// All bricks that can crack count as cracked, because they do so during a run whose time step stays.
-//
-// All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
-// damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
-// (validation/stability).
-//
-// Contacts come and go, so what they may bring is counted from the beginning (contact/README.md).
-//
-// The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints, units and damping are the
-// same; with `anew` it is found again in any case, because changes of masses or blocked axes are not noticed.
-// Without it the value may be lower than the limit, but it is below the scene's time step only if the limit is, too.
+// damping of the joints takes the velocity of half a step before. A mode of angular frequency w and damping ratio d =
+// stiffnessDamping w/2 is then stable up to (sqrt(1 + d²) - d) 2/w: the quadratic equation of its step has a root of
+// size 1 where (w dt/2)² + 2 d (w dt/2) = 1. The highest mode gives the least of these limits. It is taken as if all of
+// its stiffness were that of joints, which is on the safe side for deformable units. Where masses of deformable units
+// are scaled (Zones::massScaling), M stands for the scaled masses. Damping takes no more from a component of w than
+// with the true masses, which are at most the scaled ones, so E falls there, too. All bricks that can crack count as
+// cracked, because they do so during a run whose time step stays. All this holds for elastic joints and small
+// rotations; joints that yield, open or crush are softer. The host's own damping may bring w beyond zero. That such
+// runs are calm below the limit is measured, not proved (validation/stability). The dashpots of contacts act as such an
+// impulse on w, one after the other, and each takes energy from it (Contacts::damp). Contacts come and go, so what they
+// may bring is counted from the beginning, or, if the time step follows the state, from when two blocks are near each
+// other (contact/README.md). The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints,
+// units and damping are the same; with `anew` it is found again in any case, because changes of masses or blocked axes
+// are not noticed. Without it the value may be lower than the limit, but it is below the scene's time step only if the
+// limit is, too.
 double timeStepLimit(SceneStore&, bool anew);
+
+// Lets the time step follow the state from now on, and does so at the beginning of a step (Contacts::stepShare).
+void beginFollowing(SceneStore&);
+void followTimeStep(SceneStore&);
 
 // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.
 std::pair<int, int> limitingBodies(SceneStore&);
