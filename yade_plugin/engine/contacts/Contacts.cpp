@@ -457,7 +457,9 @@ void Contacts::measureJoints(const SceneContents& contents) {
 // Until other pairs are looked for, two blocks come nearer by the skin at most, so what may press of a block is what of
 // its surface lies as near the other one. Of a relative motion both have half, so each counts twice; all of it is the
 // block's own where the other is held.
-void Contacts::boundPairs(const SceneContents& contents) {
+void Contacts::boundPairs(const SceneContents& contents, double damping) {
+    if (!unbounded_ && damping_ == damping) return;
+    damping_ = damping;
     prepare(contents);
     turnBlocks(contents);
     if (measuredRevision_ != contents.stiffnessRevision()) measureJoints(contents);
@@ -499,13 +501,7 @@ void Contacts::boundPairs(const SceneContents& contents) {
 }
 
 double Contacts::largestEigenvalue(const SceneContents& contents, double ofJoints, double damping, bool anew) {
-    if (stepShare > 0) {
-        if (unbounded_ || damping_ != damping) {
-            damping_ = damping;
-            boundPairs(contents);
-        }
-        return ofPairs_ > 0 ? std::min(ofJoints + ofPairs_, ofAll_) : ofJoints;
-    }
+    if (stepShare > 0) return ofPairs_ > 0 ? std::min(ofJoints + ofPairs_, ofAll_) : ofJoints;
     if (anew || boundRevision_ != contents.stiffnessRevision() || boundStiffness_ != normalStiffness ||
         boundRatio_ != tangentialRatio) {
         checkBodies(contents);

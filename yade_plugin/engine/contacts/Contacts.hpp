@@ -60,7 +60,8 @@ public:
     double elastic(const SceneContents&);
     // Bound of the largest eigenvalue of stiffness over mass [1/s²] of joints, of which it is given, and contacts, with
     // masses over 1 + damping where it acts. If the time step follows the state, contacts are those of the pairs that
-    // there are, until others are looked for; else all that may ever come.
+    // there were at boundPairs(), until others are looked for; else all that may ever come.
+    void boundPairs(const SceneContents&, double damping);
     double largestEigenvalue(const SceneContents&, double ofJoints, double damping, bool anew);
     double stepShare = 0;       // time step over its limit, if it follows the state [-]; 0: it stays
     double jointEigenvalue = 0; // that of the joints when it began to follow [1/s²]
@@ -129,7 +130,6 @@ private:
     void actOn(const SceneContents&, OverlapFinder&, Pair&, Effect&) const;
     template <class Strike> void damp(const SceneContents&, const Vector3r& gravity, Strike&& strike);
     void measureJoints(const SceneContents&);
-    void boundPairs(const SceneContents&);
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
 

@@ -417,19 +417,22 @@ double timeStepLimit(SceneStore& store, bool anew) {
 }
 
 void beginFollowing(SceneStore& store) {
-    const double all = timeStepLimit(store, true);
     for (auto* one : store.contacts)
+        one->boundPairs(store, store.damping());
+    const double limit = timeStepLimit(store, true);
+    for (auto* one : store.contacts) {
         one->jointEigenvalue = store.kept<KnownEigenvalue>().value;
-    for (auto* one : store.contacts)
-        if (one->stepShare > 0) store.scene().dt = one->stepShare * all;
+        if (one->stepShare > 0) store.scene().dt = one->stepShare * limit;
+    }
 }
 
+// New pairs are near each other, or press as their joint did, so the step that found them was not too long.
 void followTimeStep(SceneStore& store) {
     for (auto* one : store.contacts) {
         if (!(one->stepShare > 0)) continue;
-        const double wanted =
-            one->stepShare * stepOf(one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false),
-                                    store.stiffnessDamping());
+        one->boundPairs(store, store.damping());
+        const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
+        const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
         double& dt = store.scene().dt;
         if (dt > wanted || growth * dt < wanted) dt = wanted;
     }
