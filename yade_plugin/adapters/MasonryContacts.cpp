@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryContacts.hpp"
+#include "engine/watch/CriticalTimeStep.hpp"
 
 MASONRY_DEFINE(MasonryContacts)
 
 namespace masonry {
 
 void MasonryContacts::step(SceneStore& store) {
-    act(store);
+    act(store, store.gravity());
     conversion_.act(store, *this);
     lookAtFalls(store);
 }
@@ -24,6 +25,12 @@ void MasonryContacts::lookAtFalls(SceneStore& store) {
             state.isDamped = false;
             store.bodies.take(body);
         }
+}
+
+void MasonryContacts::follow(double share) {
+    const StillScene store;
+    stepShare = share;
+    if (share > 0) beginFollowing(*store);
 }
 
 py::dict MasonryContacts::fallen() {

@@ -61,6 +61,8 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
               ReadOnly);
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
+        visit("following", &C::stepShare,
+              number("-", "Time step over its limit, if it follows the state (follow); 0: it stays"), Shown);
         visit("memory", &MasonryContacts::visitMemory,
               described("Pairs of blocks that are near each other, and what they remember; blocks that are awake, and "
                         "those that no joints hold any more"));
@@ -79,6 +81,10 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
             .def("impulse", &MasonryContacts::impulse,
                  "Impulse of all contacts so far on a body whose axes are all blocked, as the ground [N s], global "
                  "axes. The force of an impact depends on stiffness and time step, and its impulse does not.")
+            .def("follow", &MasonryContacts::follow, py::args("share"),
+                 "From now on O.dt is so much of the limit of the time step that the present pairs of blocks allow, "
+                 "and it changes when others are near each other. 0: it stays, and its limit is that of any contacts "
+                 "that may come.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
                  "since, when that was [s]; fell, when the block had turned by 60°, or moved by its diameter and come "
@@ -94,6 +100,7 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
 
 private:
     int countTouching();
+    void follow(double share);
     Vector3r forceBetween(int id1, int id2);
     Vector3r impulse(int body);
     py::dict fallen();

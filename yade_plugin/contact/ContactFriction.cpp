@@ -36,7 +36,8 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
     const double lever = leverOfFriction(overlap), limit = friction * normalForce;
     const Vector& normal = overlap.normal;
     FrictionStep step{Vector::Zero(), 0, 0, 0};
-    Vector shear = state.shear, slip = Vector::Zero();
+    Vector shear = state.shear, slip = Vector::Zero(),
+           acted = Vector::Zero(); // `acted` in the last step
     double twist = state.twist, spin = 0;
     const double soft = 0.5 / stiffness; // [m/N] energy over the square of a force
     if (state.stiffness > 0) {
@@ -59,6 +60,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
             shear = (shear + std::tan(half) * normal.cross(shear)).eval();
             shear -= shear.dot(normal) * normal;
             if (const double length = shear.norm(); length > 0) shear *= state.shear.norm() / length;
+            acted = shear;
             // Where the area grows, what comes in is without stress, and the force stays. Where it shrinks, what goes
             // takes its force along.
             const double energy = elasticEnergyOf(state), share = std::min(1.0, stiffness / state.stiffness);
@@ -73,6 +75,8 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
         shear *= limit / size;
         twist *= limit / size;
     }
+    // What was cut off has still acted in the first half of the way.
+    if (state.stiffness > 0) step.lost -= 0.5 * ((acted - shear).dot(slip) + (state.twist - twist) * lever * spin);
     const Vector trial = shear - stiffness * slip;
     const double trialTwist = twist - stiffness * lever * spin;
     const double size = std::sqrt(trial.squaredNorm() + trialTwist * trialTwist);

@@ -21,8 +21,9 @@ struct FrictionState {
 struct FrictionStep {
     Eigen::Vector3d force; // on the other block, at the centre of pressure [N]
     double moment;         // on the other block about the normal [N m]
-    double lost;           // energy that friction took in this step [J], never below 0
-    double stored;         // elastic energy of slip and twist [J]
+    // Energy that friction took in this step [J]; below 0 where a force that has fallen since acted on the way back.
+    double lost;
+    double stored; // elastic energy of slip and twist [J]
 };
 
 // The lever of friction [m]: the largest moment of friction about the normal, without shear force, over friction times

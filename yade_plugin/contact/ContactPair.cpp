@@ -34,16 +34,25 @@ bool cameByThemselves(const NearBlocks& blocks, double dt, const FrictionState& 
     return shift.norm() + reach * (0.5 * turn - dt * (back * spin)).norm() <= allowed;
 }
 
-// The wrench of damping [N, N m] and the power that it takes [W].
-Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double& power) {
-    power = 0;
-    if (!(law.dampingRatio > 0)) return Wrench();
+// The coefficient of the dashpot of a contact per area [Pa s/m].
+double dampingCoefficient(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap) {
+    if (!(law.dampingRatio > 0)) return 0;
     const auto& one = blocks.one;
     const double mass = massAlong(blocks, one.position + one.turn * overlap.centre, one.turn * overlap.normal);
-    const double coefficient = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
+    return 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
+}
+
+// The wrench of a dashpot [N, N m] that has the mean of the velocities before and after it has acted for a step, of
+// which those before are given. With the power p of the dashpot at these, and what its own impulse gives to it, the
+// kinetic energy falls by dt p / (1 + x) with x = dt response / (2 p): it takes energy at any time step.
+Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double coefficient,
+            double dt) {
+    Wrench dashpot;
+    if (!(coefficient > 0)) return dashpot;
     const auto step = dampContact(overlap, motionOf(blocks), coefficient, law.normalStiffness * overlap.force.norm());
-    power = step.power;
-    return wrenchOf(blocks, step.force * overlap.normal, step.moment);
+    if (!(step.power > 0)) return dashpot;
+    const auto full = wrenchOf(blocks, step.force * overlap.normal, step.moment);
+    return dashpot.add(1 / (1 + 0.5 * dt * responseOf(blocks, full, full) / step.power), full);
 }
 
 } // namespace
@@ -60,10 +69,11 @@ double energyBesidePotential(const PairMemory& memory) {
 
 // A force works over a step with its mean over both ends, as all forces of a scene do (engine/bodies/BodyStep): what
 // the forces of the last step did in the half step since then is counted first.
-void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt, const Overlap& overlap,
-               OverlapFinder& finder, PairMemory& memory, ContactEffect& effect) {
+void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt, OverlapFinder& finder,
+               PairMemory& memory, ContactEffect& effect) {
+    const auto& overlap = effect.overlap;
     effect.acts = effect.touches;
-    effect.damped = effect.lost = 0;
+    effect.damped = effect.lost = effect.dampingCoefficient = 0;
     auto& account = memory.elastic;
     account.excess = 0;
     if (memory.touched()) {
@@ -78,24 +88,36 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
         effect.wrench = potential;
         if (!effect.touches && memory.touched())
             effect.acts = endOn(blocks, memory.friction.normal, dt, account, effect.wrench);
+        if (memory.touched()) effect.lost -= 0.5 * dt * powerOf(blocks, memory.rubbing);
         effect.lost += endFriction(memory.friction);
         const double excess = account.excess;
         memory = PairMemory{};
         account.excess = excess;
         return;
     }
-    double power;
-    const auto dashpot = damp(law, blocks, overlap, power);
-    memory.dashpot = dashpot;
-    effect.damped += 0.5 * dt * power;
+    // What the dashpot will do is known when all other forces are. For those of this pair it is what it would do to the
+    // present velocities.
+    effect.dampingCoefficient = dampingCoefficient(law, blocks, overlap);
+    const auto dashpot = damp(law, blocks, overlap, effect.dampingCoefficient, dt);
+    memory.dashpot = Wrench();
     const double tangential = law.tangentialRatio * law.normalStiffness * overlap.area;
     const ContactChange change{!memory.touched(), 1 - memory.friction.stiffness / tangential};
-    effect.wrench =
-        keepEnergy(blocks, law.normalStiffness, dt, change, potential, dashpot, finder, account).add(1, dashpot);
-    const double normalForce = std::max(0.0, effect.wrench.force.dot(blocks.one.turn * overlap.normal));
+    effect.wrench = keepEnergy(blocks, law.normalStiffness, dt, change, potential, dashpot, finder, account);
+    const double normalForce =
+        std::max(0.0, (effect.wrench.force + dashpot.force).dot(blocks.one.turn * overlap.normal));
     const auto step = advanceFriction(memory.friction, overlap, blocks.pose, normalForce, tangential, law.friction);
     effect.lost += step.lost;
-    effect.wrench.add(1, wrenchOf(blocks, step.force, overlap.centre.cross(step.force) + step.moment * overlap.normal));
+    memory.rubbing = wrenchOf(blocks, step.force, overlap.centre.cross(step.force) + step.moment * overlap.normal);
+    effect.wrench.add(1, memory.rubbing);
+}
+
+Wrench dampPair(const ContactProperties& law, const NearBlocks& blocks, const NearBlocks& middle, double dt,
+                PairMemory& memory, ContactEffect& effect) {
+    const auto dashpot = damp(law, middle, effect.overlap, effect.dampingCoefficient, dt);
+    memory.dashpot = dashpot;
+    effect.damped -= 0.5 * dt * powerOf(blocks, dashpot);
+    effect.wrench.add(1, dashpot);
+    return dashpot;
 }
 
 } // namespace masonry

@@ -18,11 +18,11 @@ struct ContactProperties {
 // What a pair remembers from the last step. All numbers are 0 for a pair that did not touch.
 struct PairMemory {
     FrictionState friction;
-    Wrench dashpot; // of damping
+    Wrench rubbing, dashpot; // of friction and of damping
     ElasticAccount elastic;
 
     bool touched() const { return friction.stiffness > 0; }
-    template <class Visit> void visitState(Visit&& visit) { visit(friction, dashpot, elastic); }
+    template <class Visit> void visitState(Visit&& visit) { visit(friction, rubbing, dashpot, elastic); }
 };
 
 // The elastic energy that a pair has beside the potential of its overlap [J].
@@ -30,9 +30,11 @@ double energyBesidePotential(const PairMemory&);
 
 struct ContactEffect { // of a pair in the present step
     bool touches = false;
-    bool acts = false; // whether there is a wrench, which the first step after a contact has, too
-    Wrench wrench;
-    double lost = 0, damped = 0; // energy that friction and damping took in this step [J]
+    bool acts = false;             // whether there is a wrench, which the first step after a contact has, too
+    Wrench wrench;                 // without the dashpot until `dampPair`
+    double lost = 0, damped = 0;   // energy that friction and damping took in this step [J]
+    Overlap overlap;               // of a pair that touches
+    double dampingCoefficient = 0; // of the dashpot per area [Pa s/m]; 0: there is none in this step
 
     template <class Visit> void visitState(Visit&& visit) { visit(touches, acts, wrench); }
 };
@@ -41,9 +43,15 @@ struct ContactEffect { // of a pair in the present step
 RelativePose relativePose(const Eigen::Matrix3d& turn, const Eigen::Vector3d& position,
                           const Eigen::Matrix3d& otherTurn, const Eigen::Vector3d& otherPosition);
 
-// The step of a pair. The overlap is what OverlapFinder found for its pose; `touches` of the effect is its answer, and
-// the overlap counts only then. A pair that does not touch and did not do so in the last step needs no call.
-void actOnPair(const ContactProperties&, const NearBlocks&, double dt, const Overlap&, OverlapFinder&, PairMemory&,
-               ContactEffect&);
+// The step of a pair without its dashpot. `overlap` of the effect is what OverlapFinder found for its pose, `touches`
+// its answer, and the overlap counts only then. A pair that does not touch and did not do so in the last step needs no
+// call.
+void actOnPair(const ContactProperties&, const NearBlocks&, double dt, OverlapFinder&, PairMemory&, ContactEffect&);
+
+// Adds the dashpot of a pair, when all other forces of the step are known. `middle` has the velocities in the middle of
+// the step: those before it, with half of what these forces give in the step, and all that dashpots of other pairs have
+// given. Returns the wrench of the dashpot.
+Wrench dampPair(const ContactProperties&, const NearBlocks& blocks, const NearBlocks& middle, double dt, PairMemory&,
+                ContactEffect&);
 
 } // namespace masonry

@@ -42,6 +42,16 @@ double responseOf(const NearBlocks& blocks, const Wrench& wrench, const Wrench& 
     return sum;
 }
 
+void push(ContactBody& body, const Vector& force, const Vector& torque, double time) {
+    const bool spins = body.blocked >> 3 == 0;
+    Vector turning = spins ? Vector(body.turn.transpose() * torque) : torque;
+    for (int d = 0; d < 3; ++d) {
+        if (!(body.blocked >> d & 1)) body.velocity[d] += time * force[d] / body.mass;
+        turning[d] = spins || !(body.blocked >> (3 + d) & 1) ? time * turning[d] / body.inertia[d] : 0;
+    }
+    body.spin += spins ? Vector(body.turn * turning) : turning;
+}
+
 double massAlong(const NearBlocks& blocks, const Vector& point, const Vector& normal) {
     const Wrench unit{normal,
                       {(blocks.one.position - point).cross(normal), (point - blocks.other.position).cross(normal)}};

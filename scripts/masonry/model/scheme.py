@@ -17,8 +17,8 @@ class Scheme:
     - ``massScaling``: selective scaling of masses by the options [-]
     """
 
-    def __init__(self, args, zones):
-        self.args, self.zones = args, zones
+    def __init__(self, args, zones, contacts):
+        self.args, self.zones, self.contacts = args, zones, contacts
         self.integrator, self.joints = engine("integrator"), engine("joints")
         self.damp(args.damping, args.damping_kind)
 
@@ -83,6 +83,21 @@ class Scheme:
         self.limit = limit or timeStepLimit()
         O.dt = self.limit * (fraction or self.args.dt_fraction)
         return self.limit
+
+    def followStep(self, fraction=None):
+        """In a scene whose joints become contacts: let the time step follow what the present state
+        allows, until :meth:`keepStep`.
+
+        :param fraction: as in :meth:`chooseTimeStep`
+        """
+        if self.contacts:
+            self.contacts.follow(fraction or self.args.dt_fraction)
+
+    def keepStep(self):
+        """Let the time step stay what it is; :meth:`chooseTimeStep` follows it."""
+        if self.contacts.following:
+            self.contacts.follow(0.0)
+            self.chooseTimeStep()
 
     def keepStable(self):
         """Shorten the time step where moved blocks or new contacts have a smaller limit."""

@@ -60,7 +60,7 @@ class Structure:
             contact = self.description.contact.of(self.joints["bed"])
             self.contacts = MasonryContacts(takesJoints=True, label="contacts", **contact)
         self._addEngines()
-        self.scheme = Scheme(self.args, self.zones)
+        self.scheme = Scheme(self.args, self.zones, self.contacts)
         blocks = dict(zip(self.ids, self.description.bricks))
         rule, allowGaps = self.masonry.rule(blocks), self.description.allowGaps
         self.interactions = makeJoints(rule, allowGaps=allowGaps)

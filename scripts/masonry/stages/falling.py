@@ -30,6 +30,7 @@ class Falling:
 
     begun: float = -1.0  # when the collapse was noticed [s]
     rows: int = 0  # so far
+    step: float = 0.0  # the time step now [s]
     nextFrame: int = 0  # number of the row after which a frame is due
     quiet: int = 0  # rows with the rubble at rest, one after the other
 
@@ -49,15 +50,17 @@ def followFall(scene: Any, tilted: bool) -> str:
             running.frame()  # whose cracks are drawn
     # what stands comes to rest; blocks that are loose are not damped so
     model.scheme.dampByOptions()
-    model.scheme.keepStable()
     model.letFall()
+    model.scheme.followStep()
+    at.step = at.step or O.dt
     gravity, height = abs(box.gravity) or GRAVITY, box.high[2] - box.low[2]
     small = math.sqrt(max(map(box.size, range(len(box.bricks)))) / gravity)
-    every = max(1, round(CHECK_INTERVAL * small / O.dt))
+    interval = CHECK_INTERVAL * small
     longest = LONGEST * (math.sqrt(2 * height / gravity) + small)
-    most = max(CONSECUTIVE_CHECKS, int(longest / (every * O.dt)))
+    most = max(CONSECUTIVE_CHECKS, int(longest / interval))
     while at.rows < most and at.quiet < CONSECUTIVE_CHECKS:
-        running.advance(every)
+        running.advance(max(1, round(interval / at.step)))
+        at.step = O.dt
         at.rows += 1
         running.record()
         missing, _ = model.supports.unrest()

@@ -71,7 +71,9 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     scheme.trueMasses(name)
     scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
     usual = scene.args.dt_fraction == USUAL["dt_fraction"]
-    at.limit = scheme.chooseTimeStep(at.limit, UNDAMPED if usual and not damping else None)
+    fraction = UNDAMPED if usual and not damping else None
+    at.limit = scheme.chooseTimeStep(at.limit, fraction)
+    scheme.followStep(fraction)
     return at
 
 

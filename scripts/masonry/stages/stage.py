@@ -230,6 +230,7 @@ class _Command:
         scheme.dampByOptions()
         scheme.joints.impacts = traits.dynamic
         if follows:
+            scheme.keepStep()
             scheme.keepStable()
         running.context = StageContext(loadsGrow=traits.grows and not scene.grown)
         if follows and running.resumedHere and state.stage == FALL:
@@ -317,21 +318,26 @@ class _Command:
 
 @dataclass
 class Timed:
-    """What a stage remembers that lasts for a given time."""
+    """What a stage remembers that lasts for a given time, which it counts in ticks."""
 
-    done: int = 0  # steps so far
-    nextFrame: int = 0  # number of the step after which a frame is due
+    done: int = 0  # ticks so far
+    nextFrame: int = 0  # number of the tick after which a frame is due
+    tick: float = 0.0  # the time step when the stage began [s]; 0 before that
+    began: float = 0.0  # when that was [s]
+    step: float = 0.0  # the time step now, which may follow the state [s]
 
 
 def timed(scene, at, duration, before=None, after=None):
     """Steps for a duration [s], with rows and frames evenly in time.
 
-    :param before: function of the number of steps so far and after the next stretch, called before
-        each stretch of at most 20 steps; None: a stretch ends with a row
+    :param before: function of the number of ticks so far and after the next stretch, called before
+        each stretch of at most 20; None: a stretch ends with a row
     :param after: function that is called after each row
     """
     running = scene.running
-    length = max(1, round(duration / O.dt))
+    if not at.tick:
+        at.tick, at.began, at.step = O.dt, O.time, O.dt
+    length = max(1, round(duration / at.tick))
     perRow = stretch = max(1, length // ROWS)
     if before:
         stretch = min(20, perRow)
@@ -342,12 +348,12 @@ def timed(scene, at, duration, before=None, after=None):
         beyond = min(goal, at.done + stretch)
         if before:
             before(at.done, beyond)
-        running.advance(beyond - at.done)
-        at.done = beyond
+        running.advance(max(1, round((beyond - at.done) * at.tick / at.step)))
+        at.done, at.step = round((O.time - at.began) / at.tick), O.dt
         if at.done < goal:
             continue
         running.record()
-        text = lambda: f"{at.done * O.dt:.3f} of {duration:.3f} s"
+        text = lambda: f"{at.done * at.tick:.3f} of {duration:.3f} s"
         running.show(at.done / length, text)
         if at.done >= at.nextFrame:
             running.frame()

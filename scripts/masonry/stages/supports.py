@@ -115,6 +115,7 @@ def move(
     :param rate: of the one that moves farthest [mm/s]; None: ``--rate``
     """
     at = scene.running.stage("move", Moving())
+    scene.model.scheme.followStep()
     targets = cast("list[Target]", target)
     paths = [_path(scene, one, (x, y, z)) for one in targets]
     rate = 1e-3 * (scene.args.rate if rate is None else rate)
@@ -134,8 +135,8 @@ def move(
     states = [O.bodies[one.body].state for one in targets]
 
     def before(done, beyond):
-        began, ends = (place(min(duration, steps * O.dt)) for steps in (done, beyond))
-        speed = (ends - began) / ((beyond - done) * O.dt)
+        began, ends = (place(min(duration, ticks * at.tick)) for ticks in (done, beyond))
+        speed = (ends - began) / ((beyond - done) * at.tick)
         for state, path in zip(states, paths):
             state.vel = speed * (1e-3 / distance * path)
 

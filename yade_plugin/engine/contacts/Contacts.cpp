@@ -6,6 +6,7 @@
 #include "engine/bodies/BodyCheck.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 
 namespace masonry {
 
@@ -84,13 +85,13 @@ void Contacts::prepare(const SceneContents& contents) {
     finders_.push_back(finder);
     // A tenth of the thinnest block that moves: few blocks are that near without touching, and it takes some time to go
     // so far.
-    usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
+    if (!restored_) usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
     joined_.clear();
     contents.eachJoint([&](const JointView& joint) {
         joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
     });
     std::sort(joined_.begin(), joined_.end());
-    stale_ = true;
+    stale_ = !restored_ || placed_.size() != ids_.size();
     revision_ = contents.stiffnessRevision();
 }
 
@@ -158,8 +159,8 @@ void Contacts::findPairs(const SceneContents& contents) {
         lostInFriction += endFriction(known->memory.friction);
     pairs_ = std::move(found);
     effects_.assign(pairs_.size(), Effect());
-    finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     stale_ = false;
+    unbounded_ = true;
 }
 
 RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
@@ -176,11 +177,9 @@ ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
             all.blockedAxes(body)};
 }
 
-void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
-                     Effect& effect) const {
+void Contacts::actOn(const SceneContents& contents, OverlapFinder& finder, Pair& pair, Effect& effect) const {
     const auto pose = poseOf(contents, pair);
-    Overlap overlap;
-    effect.touches = finder.find(blocks_[pair.one], blocks_[pair.other], pose, pair.axis, overlap);
+    effect.touches = finder.find(blocks_[pair.one], blocks_[pair.other], pose, pair.axis, effect.overlap);
     const Vector3r gap = pair.gap;
     if (!effect.touches) {
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
@@ -190,15 +189,46 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
         }
         // Most pairs are only near each other.
         if (!pair.memory.touched()) {
-            effect = Effect();
+            effect.acts = false;
+            effect.lost = effect.damped = effect.dampingCoefficient = 0;
             pair.memory.elastic.excess = 0;
             return;
         }
     }
     const auto one = bodyOf(contents, pair.one), other = bodyOf(contents, pair.other);
-    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio},
-              {blocks_[pair.one], blocks_[pair.other], one, other, pose, gap}, contents.scene().dt, overlap, finder,
+    actOnPair(law(), {blocks_[pair.one], blocks_[pair.other], one, other, pose, gap}, contents.scene().dt, finder,
               pair.memory, effect);
+}
+
+// The dashpots act last, one pair after the other, on the velocities in the middle of the step. So none of them,
+// whatever the time step, adds to the energy of the step (engine/watch/CriticalTimeStep.hpp).
+template <class Strike> void Contacts::damp(const SceneContents& contents, const Vector3r& gravity, Strike&& strike) {
+    const double dt = contents.scene().dt;
+    const auto sums = contents.scene().forces().sums(contents.bodies.size());
+    middle_.resize(std::size_t(contents.bodies.size()));
+    isKnown_.assign(middle_.size(), 0);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        if (!(effects_[p].dampingCoefficient > 0)) continue;
+        for (int body : {pairs_[p].one, pairs_[p].other}) {
+            if (isKnown_[body]) continue;
+            isKnown_[body] = 1;
+            middle_[body] = bodyOf(contents, body);
+            push(middle_[body], sums.forces[body] + middle_[body].mass * gravity, sums.torques[body], 0.5 * dt);
+        }
+    }
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        if (!(effects_[p].dampingCoefficient > 0)) continue;
+        auto& pair = pairs_[p];
+        const auto &a = blocks_[pair.one], &b = blocks_[pair.other];
+        auto &one = middle_[pair.one], &other = middle_[pair.other];
+        const auto oneNow = bodyOf(contents, pair.one), otherNow = bodyOf(contents, pair.other);
+        const auto pose = poseOf(contents, pair);
+        const auto dashpot = dampPair(law(), {a, b, oneNow, otherNow, pose, pair.gap},
+                                      {a, b, one, other, pose, pair.gap}, dt, pair.memory, effects_[p]);
+        strike(pair, dashpot);
+        push(one, -dashpot.force, dashpot.torques[0], dt);
+        push(other, dashpot.force, dashpot.torques[1], dt);
+    }
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
@@ -206,8 +236,9 @@ void Contacts::turnBlocks(const SceneContents& contents) {
         turns_[id] = contents.bodies.turnOf(id).toRotationMatrix();
 }
 
-void Contacts::act(SceneContents& contents) {
+void Contacts::act(SceneContents& contents, const Vector3r& gravity) {
     prepare(contents);
+    restored_ = false;
     auto& all = contents.bodies;
     for (int id : ids_)
         if (!contents.loop) all.detectChange(id); // that engine has looked whether scripts have moved bodies
@@ -218,27 +249,29 @@ void Contacts::act(SceneContents& contents) {
     if (ratioOf_ != restitution) dampingRatio_ = dampingRatio(restitution);
     ratioOf_ = restitution;
     const int count = int(pairs_.size());
+    finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
             for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
-                actOn(contents, dampingRatio_, finders_[n], pairs_[p], effects_[p]);
+                actOn(contents, finders_[n], pairs_[p], effects_[p]);
     });
     const auto sums = contents.scene().forces().sums(all.size());
     impulses_.resize(std::size_t(all.size()), Vector3r::Zero());
-    const auto strike = [&](int body, const Vector3r& force) {
+    const auto push = [&](int body, const Vector3r& force, const Vector3r& torque) {
         sums.forces[body] += force;
+        sums.torques[body] += torque;
         if (isHeld(contents, body)) impulses_[std::size_t(body)] += contents.scene().dt * force;
     };
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        const auto& effect = effects_[p];
+    const auto strike = [&](const Pair& pair, const Wrench& wrench) {
+        push(pair.one, -wrench.force, wrench.torques[0]);
+        push(pair.other, wrench.force, wrench.torques[1]);
+    };
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+        if (effects_[p].acts) strike(pairs_[p], effects_[p].wrench);
+    damp(contents, gravity, strike);
+    for (const auto& effect : effects_) {
         lostInFriction += effect.lost;
         lostInDamping += effect.damped;
-        if (!effect.acts) continue;
-        const auto& [force, torques] = effect.wrench;
-        strike(pairs_[p].one, -force);
-        strike(pairs_[p].other, force);
-        sums.torques[pairs_[p].one] += torques[0];
-        sums.torques[pairs_[p].other] += torques[1];
     }
     if (!begun) given = elastic(contents); // blocks that a script has put into each other
     begun = true;
@@ -399,27 +432,94 @@ double Contacts::elastic(const SceneContents& contents) {
     return sum;
 }
 
-double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
-    if (!anew && boundRevision_ == contents.stiffnessRevision() && boundStiffness_ == normalStiffness &&
-        boundRatio_ == tangentialRatio)
-        return bound_;
-    checkBodies(contents);
-    double most = 0;
-    for (int id : idsOf(contents)) {
-        if (isHeld(contents, id)) continue;
-        const auto surface = blockOf(*contents.scene().bodies->body[id]->shape);
-        const auto& s = contents.bodies.state(id);
-        most = std::max(most, embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass, s.inertia,
-                                                 normalStiffness, tangentialRatio * normalStiffness));
+// What every joint between rigid bodies does to both, in their own axes, where they stood when it was made.
+void Contacts::measureJoints(const SceneContents& contents) {
+    shares_.clear();
+    for (const auto& joint : contents.joints) {
+        const auto& r = joint.geom->reference();
+        if (r.attached) continue;
+        JointShare share{joint, {r.sides[0].body, r.sides[1].body}, {}};
+        const auto& k = joint.phys->stiffness();
+        const Matrix3r axes = r.axes(),
+                       spring = axes * Vector3r(k.normal, k.shear, k.shear).asDiagonal() * axes.transpose();
+        for (int side = 0; side < 2; ++side) {
+            const Matrix3r back = r.sides[side].orientation.toRotationMatrix().transpose();
+            share.stiffness[side].setZero();
+            for (int p = 0; p < joint.geom->points(); ++p)
+                addSpring(back * (joint.geom->centre(p) - r.sides[side].position),
+                          joint.geom->area(p) * back * spring * back.transpose(), share.stiffness[side]);
+        }
+        shares_.push_back(share);
     }
-    boundRevision_ = contents.stiffnessRevision();
-    boundStiffness_ = normalStiffness;
-    boundRatio_ = tangentialRatio;
-    bound_ = 2 * most;
-    return bound_;
+    measuredRevision_ = contents.stiffnessRevision();
 }
 
-double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
+// Until other pairs are looked for, two blocks come nearer by the skin at most, so what may press of a block is what of
+// its surface lies as near the other one. Of a relative motion both have half, so each counts twice; all of it is the
+// block's own where the other is held.
+void Contacts::boundPairs(const SceneContents& contents, double damping) {
+    if (!unbounded_ && damping_ == damping) return;
+    damping_ = damping;
+    prepare(contents);
+    turnBlocks(contents);
+    if (measuredRevision_ != contents.stiffnessRevision()) measureJoints(contents);
+    const double tangential = tangentialRatio * normalStiffness;
+    std::map<int, BlockStiffness> found;
+    const auto at = [&](int body) -> auto& {
+        return found.emplace(body, BlockStiffness(BlockStiffness::Zero())).first->second;
+    };
+    const auto share = [&](int body, int other) {
+        return isHeld(contents, body) ? 0.0 : isHeld(contents, other) ? 1.0 : 2.0;
+    };
+    const auto largest = [&] {
+        double most = 0;
+        for (const auto& [body, stiffness] : found) {
+            if (isHeld(contents, body)) continue;
+            const auto own = bodyOf(contents, body);
+            const double factor = contents.bodies.isDamped(body) ? 1 + damping_ : 1;
+            most = std::max(most, factor * largestEigenvalueOf(stiffness, own));
+        }
+        return most;
+    };
+    for (const auto& pair : pairs_)
+        for (int side = 0; side < 2; ++side) {
+            const int body = side ? pair.other : pair.one, other = side ? pair.one : pair.other;
+            const double times = share(body, other);
+            if (times == 0) continue;
+            const auto pose = relativePose(turns_[body], contents.bodies.placeOf(body), turns_[other],
+                                           contents.bodies.placeOf(other));
+            addNearSurface(blocks_[body], blocks_[other], pose, usedSkin_ + pair.gap.norm(), times * normalStiffness,
+                           times * tangential, at(body));
+        }
+    ofPairs_ = largest();
+    for (const auto& joint : shares_)
+        for (int side = 0; side < 2 && !joint.joint.geom->converted(); ++side)
+            if (const double times = share(joint.bodies[side], joint.bodies[1 - side]); times > 0)
+                at(joint.bodies[side]) += times * joint.stiffness[side];
+    ofAll_ = contents.connectors.empty() ? largest() : HUGE_VAL;
+    unbounded_ = false;
+}
+
+double Contacts::largestEigenvalue(const SceneContents& contents, double ofJoints, double damping, bool anew) {
+    if (stepShare > 0) return ofPairs_ > 0 ? std::min(ofJoints + ofPairs_, ofAll_) : ofJoints;
+    if (anew || boundRevision_ != contents.stiffnessRevision() || boundStiffness_ != normalStiffness ||
+        boundRatio_ != tangentialRatio) {
+        checkBodies(contents);
+        embedded_ = 0;
+        for (int id : idsOf(contents)) {
+            if (isHeld(contents, id)) continue;
+            const auto surface = blockOf(*contents.scene().bodies->body[id]->shape);
+            const auto& s = contents.bodies.state(id);
+            embedded_ = std::max(embedded_,
+                                 2 * embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass,
+                                                        s.inertia, normalStiffness, tangentialRatio * normalStiffness));
+        }
+        boundRevision_ = contents.stiffnessRevision();
+        boundStiffness_ = normalStiffness;
+        boundRatio_ = tangentialRatio;
+    }
+    return ofJoints + embedded_ * (1 + damping);
+}
 
 std::vector<FallenBlocks::Size> Contacts::sizes() const {
     std::vector<FallenBlocks::Size> found;
@@ -455,11 +555,15 @@ Vector3r Contacts::impulseOn(int body) const {
 void Contacts::visitState(StateNumbers& n) {
     std::vector<int> awake(awake_.begin(), awake_.end());
     effects_.resize(pairs_.size());
-    n(awake, changes_, pairs_, effects_, impulses_);
+    int unbounded = unbounded_;
+    n(awake, changes_, pairs_, effects_, impulses_, placed_, usedSkin_, unbounded, ofPairs_, ofAll_, damping_,
+      jointEigenvalue, stepShare);
     if (!n.back) return;
     if (effects_.size() != pairs_.size()) n.refuse();
     awake_ = {awake.begin(), awake.end()};
-    stale_ = true;
+    unbounded_ = unbounded != 0;
+    restored_ = true;
+    stale_ = placed_.size() != ids_.size();
 }
 
 } // namespace masonry

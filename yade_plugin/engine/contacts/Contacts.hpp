@@ -4,6 +4,7 @@
 #include "FallenBlocks.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactPair.hpp"
+#include "contact/ContactStep.hpp"
 #include "engine/joints/SceneContents.hpp"
 #include <algorithm>
 #include <set>
@@ -36,8 +37,9 @@ public:
     // Throws std::invalid_argument if a body is not there, is no block, or is a deformable unit.
     void checkBodies(const SceneContents&) const;
 
-    // Adds the forces of all contacts to those of the present step, and counts their energies.
-    void act(SceneContents&);
+    // Adds the forces of all contacts to those of the present step, and counts their energies. Gravity [m/s²] is for
+    // the dashpots alone.
+    void act(SceneContents&, const Vector3r& gravity);
     // What a joint did to its bodies in this step, when it was handed over.
     struct Joint {
         int body1, body2;
@@ -56,10 +58,13 @@ public:
     Vector3r impulseOn(int body) const;
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
-    // Bound of the largest eigenvalue of stiffness over mass that contacts bring, now and later [1/s²].
-    double largestEigenvalue(const SceneContents&, bool anew);
-    // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
-    double largestDampingRatio() const;
+    // Bound of the largest eigenvalue of stiffness over mass [1/s²] of joints, of which it is given, and contacts, with
+    // masses over 1 + damping where it acts. If the time step follows the state, contacts are those of the pairs that
+    // there were at boundPairs(), until others are looked for; else all that may ever come.
+    void boundPairs(const SceneContents&, double damping);
+    double largestEigenvalue(const SceneContents&, double ofJoints, double damping, bool anew);
+    double stepShare = 0;       // time step over its limit, if it follows the state [-]; 0: it stays
+    double jointEigenvalue = 0; // that of the joints when it began to follow [1/s²]
     // Where a force acted in the last step, because blocks pressed on each other or parted in this step: two bodies,
     // and force [N] and torque about its centre [N m] on the second of them, global axes.
     struct PairForce {
@@ -92,6 +97,15 @@ private:
     struct Placed {               // a body when the pairs were last looked for
         Vector3r position;
         double orientation[4];
+
+        template <class Visit> void visitState(Visit&& visit) {
+            visit(position, orientation[0], orientation[1], orientation[2], orientation[3]);
+        }
+    };
+    struct JointShare { // what a joint between rigid bodies does to both
+        JointView joint;
+        int bodies[2];
+        BlockStiffness stiffness[2];
     };
     struct Change { // of what acts on a body, where its joint was handed over in the last step and a contact goes on
         int body;
@@ -112,7 +126,10 @@ private:
     void findPairs(const SceneContents&);
     RelativePose poseOf(const SceneContents&, const Pair&) const;
     ContactBody bodyOf(const SceneContents&, int body) const;
-    void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
+    ContactProperties law() const { return {normalStiffness, tangentialRatio, friction, dampingRatio_}; }
+    void actOn(const SceneContents&, OverlapFinder&, Pair&, Effect&) const;
+    template <class Strike> void damp(const SceneContents&, const Vector3r& gravity, Strike&& strike);
+    void measureJoints(const SceneContents&);
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
 
@@ -128,11 +145,20 @@ private:
     std::set<int> awake_;                     // where joints are handed over: bodies that may come near others
     std::vector<Change> changes_;
     double usedSkin_ = 0;
-    double dampingRatio_ = 0, ratioOf_ = -1;                   // dampingRatio(restitution), and for which restitution
-    double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
-    long boundRevision_ = -1;
-    bool stale_ = true;  // whether the pairs must be looked for
-    long revision_ = -1; // SceneContents::revision() of all that
+    double dampingRatio_ = 0, ratioOf_ = -1; // dampingRatio(restitution), and for which restitution
+    double embedded_ = 0, boundStiffness_ = -1,
+           boundRatio_ = -1; // of any contacts, and what it was found for
+    long boundRevision_ = -1, measuredRevision_ = -1;
+    // Bounds for the pairs that there are, of contacts alone, and with all joints that were not handed over; and the
+    // constant of numerical damping in them.
+    double ofPairs_ = 0, ofAll_ = 0, damping_ = 0;
+    bool unbounded_ = true;              // whether these must be found
+    std::vector<JointShare> shares_;     // of all joints between rigid bodies
+    std::vector<ContactBody> middle_;    // scratch of damp(): bodies in the middle of the step, by id
+    std::vector<unsigned char> isKnown_; // whether there
+    bool restored_ = false;              // whether pairs and places are those of a checkpoint
+    bool stale_ = true;                  // whether the pairs must be looked for
+    long revision_ = -1;                 // SceneContents::revision() of all that
 };
 
 } // namespace masonry

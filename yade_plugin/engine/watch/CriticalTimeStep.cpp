@@ -10,20 +10,19 @@ namespace masonry {
 
 namespace {
 
-// The limit of a scene that is kept, and what it was found for.
-struct KnownLimit {
+// The largest eigenvalue without contacts of a scene that is kept, and what it was found for.
+struct KnownEigenvalue {
     long revision = -1;
-    double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
+    double damping = 0, zoneDamping = 0, massScaling = 0;
     double connectors = 0; // sum of their stiffness, with that of testing machines
-    double contacts = 0;   // bound of their eigenvalues [1/s²]
-    double contactDamping = 0;
-    double limit = 0; // [s]
-    bool isForSame(const KnownLimit& o) const {
+    double value = 0;      // [1/s²]
+    bool isForSame(const KnownEigenvalue& o) const {
         return revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && connectors == o.connectors &&
-               contacts == o.contacts && contactDamping == o.contactDamping;
+               massScaling == o.massScaling && connectors == o.connectors;
     }
 };
+
+constexpr double growth = 1.1; // of the time step that follows the state: less is not worth a change
 
 // The time step at which a motion of this eigenvalue is on the verge of being unstable [s].
 double stepOf(double eigenvalue, double stiffnessDamping) {
@@ -42,32 +41,46 @@ double timeStepLimit(SceneStore& store, bool anew) {
             stiffnessOfConnectors += connectors->stiffnessOf(c).sum() + connectors->rotationalStiffnessOf(c).sum();
     for (const auto* load : store.loads)
         stiffnessOfConnectors += load->machineStiffness().sum();
-    double contacts = 0, contactDamping = 0;
-    for (auto* one : store.contacts) {
-        contacts += one->largestEigenvalue(store, anew);
-        contactDamping = std::max(contactDamping, one->largestDampingRatio());
-    }
-    auto& known = store.kept<KnownLimit>();
-    KnownLimit now{store.stiffnessRevision(),
-                   store.damping(),
-                   store.zones ? store.zones->damping : 0,
-                   store.stiffnessDamping(),
-                   store.zones ? store.zones->massScaling : 0,
-                   stiffnessOfConnectors,
-                   contacts,
-                   contactDamping};
-    if (!anew && now.isForSame(known)) return known.limit;
-    const auto limit = [&](Dynamics::Damping damping) {
-        // The sum of the largest eigenvalues of joints and of contacts is at least that of both.
-        const double contacts = now.contacts * (1 + now.damping);
-        return (std::sqrt(1 + now.contactDamping * now.contactDamping) - now.contactDamping) *
-               stepOf(Dynamics(store, damping).highest() + contacts, now.stiffnessDamping);
+    auto& known = store.kept<KnownEigenvalue>();
+    KnownEigenvalue now{store.stiffnessRevision(), store.damping(), store.zones ? store.zones->damping : 0,
+                        store.zones ? store.zones->massScaling : 0, stiffnessOfConnectors};
+    const auto limit = [&] {
+        double all = now.value;
+        for (auto* one : store.contacts)
+            all = one->largestEigenvalue(store, all, now.damping, anew);
+        return stepOf(all, store.stiffnessDamping());
     };
+    if (!anew && now.isForSame(known)) {
+        now = known;
+        return limit();
+    }
     // A bound that does not depend on which of the bodies are damped is enough if it is kept to.
-    if (!anew) now.limit = limit(Dynamics::AsIfAllWereDamped);
-    if (!(store.scene().dt <= now.limit)) now.limit = limit(Dynamics::Each);
+    if (!anew) now.value = Dynamics(store, Dynamics::AsIfAllWereDamped).highest();
+    if (anew || !(store.scene().dt <= limit())) now.value = Dynamics(store, Dynamics::Each).highest();
     known = now;
-    return known.limit;
+    return limit();
+}
+
+void beginFollowing(SceneStore& store) {
+    for (auto* one : store.contacts)
+        one->boundPairs(store, store.damping());
+    const double limit = timeStepLimit(store, true);
+    for (auto* one : store.contacts) {
+        one->jointEigenvalue = store.kept<KnownEigenvalue>().value;
+        if (one->stepShare > 0) store.scene().dt = one->stepShare * limit;
+    }
+}
+
+// New pairs are near each other, or press as their joint did, so the step that found them was not too long.
+void followTimeStep(SceneStore& store) {
+    for (auto* one : store.contacts) {
+        if (!(one->stepShare > 0)) continue;
+        one->boundPairs(store, store.damping());
+        const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
+        const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
+        double& dt = store.scene().dt;
+        if (dt > wanted || growth * dt < wanted) dt = wanted;
+    }
 }
 
 std::pair<int, int> limitingBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).stiffest(); }

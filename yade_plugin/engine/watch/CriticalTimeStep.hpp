@@ -36,12 +36,18 @@ class SceneStore;
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).
 //
-// Contacts come and go, so what they may bring is counted from the beginning (contact/README.md).
+// The dashpots of contacts act as impulses on w, one after the other, and each takes energy from it (Contacts::damp).
+// Contacts come and go, so what they may bring is counted from the beginning, or, if the time step follows the state,
+// from when two blocks are near each other (contact/README.md).
 //
 // The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints, units and damping are the
 // same; with `anew` it is found again in any case, because changes of masses or blocked axes are not noticed.
 // Without it the value may be lower than the limit, but it is below the scene's time step only if the limit is, too.
 double timeStepLimit(SceneStore&, bool anew);
+
+// Lets the time step follow the state from now on, and does so at the beginning of a step (Contacts::stepShare).
+void beginFollowing(SceneStore&);
+void followTimeStep(SceneStore&);
 
 // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.
 std::pair<int, int> limitingBodies(SceneStore&);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "EngineScope.hpp"
+#include "CriticalTimeStep.hpp"
 #include "EngineOrder.hpp"
 #include "SceneCheck.hpp"
 #include "common/Parallel.hpp"
@@ -20,6 +21,7 @@ EngineScope::EngineScope(yade::Scene& scene, const yade::Engine& engine)
         else {
             store_->update(SceneStore::ScanScope::Step);
             checkBeforeStep(*store_);
+            followTimeStep(*store_);
             store_->opened();
             Parallel::instance().stepBegins();
         }
