@@ -147,7 +147,7 @@ def settle(
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, scene.args.damping), damping)
-    if not (grown or at.done or at.solved):
+    if not (grown or scene.running.isResumed and scene.running.resumedHere):
         scene.running.state.stages[-1]["solved"] = at.solved = solve(scene)
     return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
 
