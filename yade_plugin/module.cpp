@@ -116,6 +116,11 @@ void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
 
 py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
 
+void displaceAlongMode(ElasticSolution& solution, double amount) {
+    const StillScene still;
+    solution.displace(amount);
+}
+
 void connected() {
     StillScene()->connected();
     giveMemoryBack();
@@ -197,7 +202,14 @@ static void registerAll() {
         "ElasticSolution", "Equilibrium of the scene while joints and units stay elastic. For masonry.stages.rest.")
         .def("move", &ElasticSolution::move,
              "Move all to where the forces of the last step, in which nothing has moved, would be in equilibrium. "
-             "Returns the square root of the work of what was not in equilibrium [J^(1/2)].");
+             "Returns the square root of the work of what was not in equilibrium [J^(1/2)].")
+        .def("findMode", &ElasticSolution::findMode, py::args("direction"),
+             "Find the first mode along a direction. Returns the square of its angular frequency [1/s²], 0 if there is "
+             "none.")
+        .def("participation", &ElasticSolution::participation,
+             "Momentum of the mode along its direction per its velocity [kg^(1/2)].")
+        .def("displace", &displaceAlongMode, py::args("amount"), "Move all along the mode [m kg^(1/2)].")
+        .def("force", &ElasticSolution::force, "Force of the last step along the mode [N/kg^(1/2)].");
     py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
             "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
             "and what is "

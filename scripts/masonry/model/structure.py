@@ -166,14 +166,13 @@ class Structure:
         """The largest opening of a point of any joint now [mm], 0 if none is open."""
         return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
-    def staysElastic(self, share):
-        """Whether joints have lost at most a share of the elastic energy [-]."""
+    def energies(self):
+        """Energy that joints have lost, and elastic energy [J]."""
         energy = self.energy.balance()
-        lost, stored = (
+        return [
             sum(abs(v) for name, v in energy.items() if name.startswith(kind))
             for kind in ("dissipated", "elastic")
-        )
-        return lost <= share * stored
+        ]
 
     def fallen(self):
         """Fallen blocks of a scene whose collapse is followed: by the index of the block a dict

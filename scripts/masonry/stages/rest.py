@@ -35,9 +35,9 @@ PERIODS = 4.0
 WAITED = 10.0  # periods on springs for which a trial waits at least
 SLENDER = 8.0  # height over the least width from which a settled structure may buckle [-]
 SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
-#: Elastic solution: time step in which nothing moves [s]; largest error of its forces [-]; how
-#: often all is moved at most; energy lost in joints that count as elastic over that stored [-].
-INSTANT, EXACT, CORRECTIONS, LOST = 1e-30, 1e-9, 20, 1e-6
+#: Elastic solution: largest error of its forces [-]; how often all is moved at most; energy lost in
+#: joints that count as elastic over that stored [-].
+EXACT, CORRECTIONS, LOST = 1e-9, 20, 1e-6
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -147,7 +147,7 @@ def settle(
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, scene.args.damping), damping)
-    if not (grown or at.done or at.solved):
+    if not (grown or scene.running.isResumed and scene.running.resumedHere):
         scene.running.state.stages[-1]["solved"] = at.solved = solve(scene)
     return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
 
@@ -163,14 +163,17 @@ def solve(scene: Any) -> bool:
     try:
         with running.clock("steps"):
             model.loading.grow(1.0)
-            O.dt = INSTANT
+            O.dt = period.INSTANT
             scheme.scaleMasses(0.0)
             O.step()
             solution, errors = ElasticSolution(), []
-            while not solved and len(errors) < CORRECTIONS and model.staysElastic(LOST):
+            while not solved and len(errors) < CORRECTIONS:
                 errors.append(solution.move())
                 O.step()
-                solved = errors[-1] <= EXACT * errors[0] and model.staysElastic(LOST)
+                lost, stored = model.energies()
+                if lost > LOST * stored:
+                    break
+                solved = errors[-1] <= EXACT * errors[0]
             running.state.steps += 1 + len(errors)
     except (RuntimeError, ValueError):  # something falls, or can move without resistance
         pass

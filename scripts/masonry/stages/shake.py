@@ -214,9 +214,10 @@ def remains(scene, rows):
 
 @stage(answers=remains)
 def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
-    """Measure the first period of the structure, which is at rest, by its free vibration after a
-    small push, and what has moved since it was built. The push is 0.05 g, and smaller where the
-    period depends on it, as where something lifts off. Drives hold. The scene stays as it is.
+    """Measure the first period of the structure, which is at rest, and what has moved since it was
+    built. Of an elastic structure it is that of its mode with its present weights, else that of its
+    free vibration after a push of 0.05 g, and less where the period depends on it, as where
+    something lifts off. Drives hold. The scene stays as it is.
 
     :param direction: horizontal
     """

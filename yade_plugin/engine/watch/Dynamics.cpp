@@ -246,6 +246,21 @@ void Dynamics::slow(Eigen::VectorXd& x) const {
     }
 }
 
+void Dynamics::scaleMasses(Eigen::VectorXd& x) const {
+    for (const auto& block : blocks_) {
+        Eigen::VectorXd own(Eigen::Index(block.degrees.size()));
+        for (std::size_t i = 0; i < block.degrees.size(); ++i)
+            own[i] = x[block.degrees[i]];
+        Eigen::VectorXd added = own - block.whole * (block.whole.transpose() * own);
+        if (block.block.split) {
+            const Eigen::VectorXd ofParts = own - block.parts * (block.parts.transpose() * own);
+            added = ofParts + sharedScaling * (added - ofParts);
+        }
+        for (std::size_t i = 0; i < block.degrees.size(); ++i)
+            x[block.degrees[i]] += store_.zones->massScaling * added[Eigen::Index(i)];
+    }
+}
+
 void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
     if (blocks_.empty()) {
         y.noalias() = matrix_ * x;

@@ -38,6 +38,8 @@ public:
     const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix() const { return matrix_; }
     // First degree of freedom of every rigid body, about the axes that ownAxes() gives; those of nodes come before.
     const std::map<int, int>& firstOfBody() const { return firstOfBody_; }
+    // Multiplies a motion, divided by the scale, by the scaled masses over those of the scale.
+    void scaleMasses(Eigen::VectorXd&) const;
 
 private:
     // A joint between rigid bodies, one subcontact of a joint with a deformable side, a connector or a testing machine.

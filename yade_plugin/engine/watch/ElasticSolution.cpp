@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ElasticSolution.hpp"
 #include "engine/bodies/Integrator.hpp"
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -167,28 +168,12 @@ double ElasticSolution::move() {
     Vector moved = factors_.solve(forces);
     holdDrives(moved);
     const double work = forces.dot(moved);
-    const auto at = [&](int degree) {
-        return places_[degree] < 0 ? 0.0 : dynamics_.scale()[degree] * moved[places_[degree]];
-    };
-    const auto vectorAt = [&](int degree) { return Vector3r(at(degree), at(degree + 1), at(degree + 2)); };
-    if (auto* zones = scene_.zones) {
-        auto displacements = zones->displacements();
-        for (std::size_t n = 0; n < displacements.size(); ++n)
-            displacements[n] += vectorAt(3 * int(n));
-        zones->setDisplacements(displacements);
-    }
     struct Motion {
         Vector3r vel = Vector3r::Zero(), angVel = Vector3r::Zero();
     };
     std::vector<Motion> motions(scene_.bodies.size());
-    for (const auto& [body, first] : dynamics_.firstOfBody()) {
-        const State& s = scene_.bodies.state(body);
-        motions[body] = {vectorAt(first), ownAxes(s) * vectorAt(first + 3)};
-        const double angle = motions[body].angVel.norm();
-        Quaternionr turned = s.ori;
-        if (angle > 0) turned = Quaternionr(Eigen::AngleAxisd(angle, motions[body].angVel / angle)) * turned;
-        scene_.bodies.setPlace(body, s.pos + motions[body].vel, turned.normalized());
-    }
+    for (const auto& [body, first] : dynamics_.firstOfBody())
+        motions[body] = {motionOf(moved, first), ownAxes(scene_.bodies.state(body)) * motionOf(moved, first + 3)};
     double grown = 0; // work of loads that have grown in this move
     for (auto* load : scene_.loads) {
         const double before = load->work;
@@ -197,7 +182,115 @@ double ElasticSolution::move() {
     }
     scene_.integrator->damped += 0.5 * work - grown;
     first_ = false;
+    displace(moved);
     return std::sqrt(std::max(0.0, work));
+}
+
+// What three degrees of freedom from this one on have of a motion [m] or [rad].
+Vector3r ElasticSolution::motionOf(const Vector& moved, int degree) const {
+    Vector3r found = Vector3r::Zero();
+    for (int d = 0; d < 3; ++d)
+        if (places_[degree + d] >= 0) found[d] = dynamics_.scale()[degree + d] * moved[places_[degree + d]];
+    return found;
+}
+
+void ElasticSolution::displace(const Vector& moved) {
+    if (auto* zones = scene_.zones) {
+        auto displacements = zones->displacements();
+        for (std::size_t n = 0; n < displacements.size(); ++n)
+            displacements[n] += motionOf(moved, 3 * int(n));
+        zones->setDisplacements(displacements);
+    }
+    for (const auto& [body, first] : dynamics_.firstOfBody()) {
+        const State& s = scene_.bodies.state(body);
+        const Vector3r turn = ownAxes(s) * motionOf(moved, first + 3);
+        const double angle = turn.norm();
+        Quaternionr turned = s.ori;
+        if (angle > 0) turned = Quaternionr(Eigen::AngleAxisd(angle, turn / angle)) * turned;
+        scene_.bodies.setPlace(body, s.pos + motionOf(moved, first), turned.normalized());
+    }
+}
+
+// The masses of the scene times a motion; the scale stands for those that are not scaled.
+ElasticSolution::Vector ElasticSolution::inertia(const Vector& motion) const {
+    Vector all(dynamics_.scale().size());
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+        all[i] = places_[i] < 0 ? 0 : motion[places_[i]];
+    dynamics_.scaleMasses(all);
+    Vector found(count_);
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+        if (places_[i] >= 0) found[places_[i]] = all[i];
+    return found;
+}
+
+// By the method of Lanczos: with the flexibility, from the displacements under a uniform acceleration on. Let c be the
+// share of a mode in the mass and w its angular frequency; these displacements have c/w⁴ of it, and the momentum c/w.
+double ElasticSolution::findMode(const Vector3r& direction) {
+    constexpr int most = 60;
+    constexpr double exact = 1e-9;
+    const StillScene still;
+    Vector uniform = Vector::Zero(count_);
+    const auto put = [&](int degree, double value) {
+        if (places_[degree] >= 0) uniform[places_[degree]] = value / dynamics_.scale()[degree];
+    };
+    const auto nodes = scene_.zones ? scene_.zones->displacements().size() : 0;
+    for (std::size_t i = 0; i < 3 * nodes; ++i)
+        put(int(i), direction[i % 3]);
+    for (const auto& [body, first] : dynamics_.firstOfBody())
+        for (int d = 0; d < 3; ++d)
+            put(first + d, direction[d]);
+    const Vector mass = inertia(uniform);
+    const auto flexible = [&](const Vector& forces) {
+        Vector moved = factors_.solve(forces);
+        holdDrives(moved);
+        return moved;
+    };
+    std::vector<Vector> bases, massesOfBases;
+    Vector next = flexible(mass);
+    std::vector<double> diagonal, beside;
+    while (true) {
+        const Vector heavy = inertia(next);
+        const double size = std::sqrt(next.dot(heavy));
+        if (!(size > 0)) return 0;
+        if (!bases.empty()) beside.push_back(size);
+        bases.push_back(next / size);
+        massesOfBases.push_back(heavy / size);
+        next = flexible(massesOfBases.back());
+        diagonal.push_back(next.dot(massesOfBases.back()));
+        for (int twice = 0; twice < 2; ++twice)
+            for (std::size_t i = 0; i < bases.size(); ++i)
+                next -= next.dot(massesOfBases[i]) * bases[i];
+        const int count = int(bases.size());
+        Eigen::MatrixXd small = Eigen::MatrixXd::Zero(count, count);
+        for (int i = 0; i < count; ++i) {
+            small(i, i) = diagonal[i];
+            if (i > 0) small(i, i - 1) = small(i - 1, i) = beside[i - 1];
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(small);
+        int best = 0;
+        double largest = 0;
+        for (int i = 0; i < count; ++i) {
+            const double flexibility = solved.eigenvalues()[i], share = solved.eigenvectors()(0, i);
+            const double momentum = flexibility > 0 ? share * share * std::pow(flexibility, -1.5) : 0;
+            if (momentum <= largest) continue;
+            largest = momentum;
+            best = i;
+        }
+        const double flexibility = solved.eigenvalues()[best];
+        const double error = std::sqrt(next.dot(inertia(next))) * std::abs(solved.eigenvectors()(count - 1, best));
+        if (error * error > exact * flexibility * flexibility && count < std::min(most, count_)) continue;
+        if (error * error > exact * flexibility * flexibility) return 0;
+        mode_ = Vector::Zero(count_);
+        for (int i = 0; i < count; ++i)
+            mode_ += solved.eigenvectors()(i, best) * bases[i];
+        participation_ = mode_.dot(mass);
+        return 1 / flexibility;
+    }
+}
+
+double ElasticSolution::force() const {
+    const StillScene still;
+    return mode_.dot(imbalance());
 }
 
 } // namespace masonry

@@ -19,11 +19,25 @@ public:
     // Half of that work counts as taken by damping. Loads grow in the first move, so theirs is half of what they do.
     double move();
 
+    // Finds the first mode along a direction, while drives hold: that which a sudden uniform acceleration gives most
+    // momentum. Returns the square of its angular frequency [1/s²], with which the displacements of a mode have masses
+    // of 1 in sum.
+    double findMode(const Vector3r& direction);
+    // Momentum of the mode along that direction per its velocity [kg^(1/2)].
+    double participation() const { return participation_; }
+    // Moves all along the mode [m kg^(1/2)], without work.
+    void displace(double amount) { displace(amount * mode_); }
+    // Force of the last step along the mode, in whose direction it does work [N/kg^(1/2)].
+    double force() const;
+
 private:
     using Vector = Eigen::VectorXd;
+    void displace(const Vector& moved);
+    Vector inertia(const Vector&) const;
     Vector imbalance() const;
     Vector alongDrive(const Load&) const;
     void holdDrives(Vector& moved) const;
+    Vector3r motionOf(const Vector& moved, int degree) const;
 
     SceneStore& scene_;
     Dynamics dynamics_;
@@ -31,6 +45,8 @@ private:
     int count_ = 0;           // of those that can move
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
     bool first_ = true;
+    Vector mode_; // displacements divided by the scale
+    double participation_ = 0;
 };
 
 } // namespace masonry
