@@ -88,6 +88,13 @@ py::tuple criticalTimeStep() {
 
 double presentLimit() { return timeStepLimit(*StillScene(), true); }
 
+py::dict bodyEigenvalues() {
+    py::dict all;
+    for (const auto& [body, value] : eigenvaluesOfBodies(*StillScene()))
+        all[body] = value;
+    return all;
+}
+
 // How many threads may be used, and what steps took on them.
 py::list threads() {
     const BetweenSteps still;
@@ -192,6 +199,10 @@ static void registerAll() {
         "joints, masses, blocked motions or damping.");
     py::def("timeStepLimit", &presentLimit,
             "The first number of criticalTimeStep() [s], in half the time. For masonry.model.structure.");
+    py::def(
+        "bodyEigenvalues", &bodyEigenvalues,
+        "By the id of every rigid body with a joint the largest eigenvalue of its vibration while all others are held "
+        "[1/s²]. For masonry.model.scheme.");
     py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
             "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
             "and what is "

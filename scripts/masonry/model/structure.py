@@ -69,7 +69,7 @@ class Structure:
         for target in self.description.targets.values():
             if not target.joined:  # placed later: no joints are made to the blocks it touches
                 self._addPlaten(target, loadingBlock)
-        self.scheme.begin()
+        self.scheme.begin(not (self.zones or self.contacts or self.description.functors))
         self._joinRecords()
         self.supports = Supports(self)
         self.loading.begin()

@@ -2,11 +2,13 @@
 #include "CriticalTimeStep.hpp"
 #include "engine/bodies/BodyCheck.hpp"
 #include "engine/bodies/BodyStep.hpp"
+#include "engine/bodies/Integrator.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "engine/contacts/Contacts.hpp"
 #include "engine/store/SceneStore.hpp"
 #include "engine/units/Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstdint>
@@ -44,6 +46,8 @@ public:
     // The two bodies whose joint has most of the elastic energy of the highest mode, or twice the body of the unit that
     // has.
     std::pair<int, int> stiffest() const;
+    // Of every rigid body while all others are held, by its id [1/s²].
+    std::map<int, double> highestAlone() const;
 
 private:
     // A joint between rigid bodies, one subcontact of a joint with a deformable side, or a connector.
@@ -108,8 +112,9 @@ void Dynamics::addBody(int id, const char* holder) {
     if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) return;
     if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
     const State& s = *body.state;
+    const double factor = store_.integrator ? store_.integrator->inertiaFactor(id) : 1;
     for (int d = 0; d < 6; ++d)
-        addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store_.damping() : 0, isBlocked(s, d));
+        addDegree(factor * (d < 3 ? s.mass : s.inertia[d - 3]), s.isDamped ? store_.damping() : 0, isBlocked(s, d));
 }
 
 void Dynamics::addBodies(const JointView& joint) {
@@ -367,18 +372,29 @@ std::pair<int, int> Dynamics::stiffest() const {
     return most == energies.end() ? std::pair(-1, -1) : most->first;
 }
 
+std::map<int, double> Dynamics::highestAlone() const {
+    std::map<int, double> found;
+    for (const auto& [body, first] : firstOfBody_) {
+        const Eigen::MatrixXd own = matrix_.block(first, first, 6, 6);
+        found[body] =
+            common_ * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(own, Eigen::EigenvaluesOnly).eigenvalues()[5];
+    }
+    return found;
+}
+
 // The limit of a scene that is kept, and what it was found for.
 struct KnownLimit {
     long revision = -1;
     double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
+    double inertia = 0;    // sum of the factors on it [-]
     double connectors = 0; // sum of their stiffness
     double contacts = 0;   // bound of their eigenvalues [1/s²]
     double contactDamping = 0;
     double limit = 0; // [s]
     bool isForSame(const KnownLimit& o) const {
         return revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && connectors == o.connectors &&
-               contacts == o.contacts && contactDamping == o.contactDamping;
+               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && inertia == o.inertia &&
+               connectors == o.connectors && contacts == o.contacts && contactDamping == o.contactDamping;
     }
 };
 
@@ -402,12 +418,16 @@ double timeStepLimit(SceneStore& store, bool anew) {
         contacts += one->largestEigenvalue(store, anew);
         contactDamping = std::max(contactDamping, one->largestDampingRatio());
     }
+    double inertia = 0;
+    for (int b = 0; store.integrator && b < int(store.integrator->inertiaFactors.size()); ++b)
+        inertia += store.integrator->inertiaFactors[b];
     auto& known = store.kept<KnownLimit>();
     KnownLimit now{store.stiffnessRevision(),
                    store.damping(),
                    store.zones ? store.zones->damping : 0,
                    store.stiffnessDamping(),
                    store.zones ? store.zones->massScaling : 0,
+                   inertia,
                    stiffnessOfConnectors,
                    contacts,
                    contactDamping};
@@ -424,6 +444,8 @@ double timeStepLimit(SceneStore& store, bool anew) {
     known = now;
     return known.limit;
 }
+
+std::map<int, double> eigenvaluesOfBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).highestAlone(); }
 
 std::pair<int, int> limitingBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).stiffest(); }
 
