@@ -89,6 +89,13 @@ py::tuple criticalTimeStep() {
 
 double presentLimit() { return timeStepLimit(*StillScene(), true); }
 
+py::dict bodyEigenvalues() {
+    py::dict all;
+    for (const auto& [body, value] : eigenvaluesOfBodies(*StillScene()))
+        all[body] = value;
+    return all;
+}
+
 // How many threads may be used, and what steps took on them.
 py::list threads() {
     const BetweenSteps still;
@@ -210,6 +217,10 @@ static void registerAll() {
              "Momentum of the mode along its direction per its velocity [kg^(1/2)].")
         .def("displace", &displaceAlongMode, py::args("amount"), "Move all along the mode [m kg^(1/2)].")
         .def("force", &ElasticSolution::force, "Force of the last step along the mode [N/kg^(1/2)].");
+    py::def(
+        "bodyEigenvalues", &bodyEigenvalues,
+        "By the id of every rigid body with a joint the largest eigenvalue of its vibration while all others are held "
+        "[1/s²]. For masonry.model.scheme.");
     py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
             "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
             "and what is "

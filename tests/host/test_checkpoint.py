@@ -3,6 +3,7 @@
 scene."""
 
 import struct
+import zlib
 
 from hosted import *
 from masonry._masonry import loadScene, saveScene
@@ -144,16 +145,23 @@ def saved(tmp_path):
     panel(False)
     run(10)
     saveCheckpoint(path, "text")
-    return path, open(path, "rb").read()
+    with open(path, "rb") as file:  # as files were before they were compressed
+        data = zlib.decompress(file.read())
+    with open(path, "wb") as file:
+        file.write(data)
+    return path, data
 
 
 def test_a_damaged_file_is_refused_in_words(saved):
     path, data = saved
     half = len(data) // 2
-    flipped = data[:half] + bytes([data[half] ^ 4]) + data[half + 1 :]
+    flip = lambda data, at: data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :]
+    flipped, small = flip(data, half), zlib.compress(data)
     for wrong, message in (
         (data[:half], "is cut short: "),
         (flipped, "is damaged: its bytes do not give the sum"),
+        (small[:-9], "is cut short: "),
+        (flip(small, len(small) // 2), "is damaged: "),
         (b"time_s\n", "is no masonry checkpoint"),
         (data.replace(b"format 3", b"format 9"), "is of another version of the plugin"),
     ):

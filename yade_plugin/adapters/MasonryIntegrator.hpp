@@ -32,8 +32,13 @@ class MasonryIntegrator : public EngineAdapter<MasonryIntegrator>, public Integr
               number("m/s²",
                      "Gravity. It may change during a run: MasonryZones follows it, and the energy balance counts "
                      "its work"));
+        visit("inertiaFactors", &I::inertiaFactors,
+              described(
+                  "Factors, at least 1, on the inertia of bodies by their ids, without a weight [-]; beyond its end "
+                  "1. For states of rest: inertia of the few bodies that set the time step makes it longer"));
         ledgerOfBodies<I>(visit);
         GravityWork::describe<I>(visit);
+        visit("factorsBefore", &I::factorsBefore, described("inertiaFactors in the last step"), Hidden);
         visit("last", computed(&I::lastForces, &I::setLastForces),
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
         visit("shaking", &MasonryIntegrator::visitShaking, described("How far the record of the ground's motion is"));

@@ -17,6 +17,7 @@
 #include <vtkCellData.h>
 #include <vtkDataCompressor.h>
 #include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
@@ -190,13 +191,30 @@ Vector3r moved(const SceneStore& store, const JointGeometry& geom, int side, int
     throw std::runtime_error("cannot write " + path + ": " + (reason ? std::strerror(reason) : "no reason known"));
 }
 
+// Files are looked at: seven digits are enough.
+void roundArrays(vtkDataSetAttributes* data) {
+    for (int n = 0; n < data->GetNumberOfArrays(); ++n) {
+        auto* exact = vtkDoubleArray::SafeDownCast(data->GetArray(n));
+        if (!exact) continue;
+        vtkNew<vtkFloatArray> rounded;
+        rounded->DeepCopy(exact);
+        data->AddArray(rounded); // in the place of the one with this name
+    }
+}
+
 template <class Writer, class Data> void write(const std::string& path, Data* data) {
     errno = 0;
     if (std::FILE* file = std::fopen(path.c_str(), "w")) // VTK's own message is long and without the reason
         std::fclose(file);
     else
         failed(path, errno);
+    roundArrays(data->GetPointData());
+    roundArrays(data->GetCellData());
+    vtkNew<vtkFloatArray> rounded;
+    rounded->DeepCopy(data->GetPoints()->GetData());
+    data->GetPoints()->SetData(rounded);
     vtkNew<Writer> writer;
+    writer->EncodeAppendedDataOff(); // base64 takes a third more
     writer->SetFileName(path.c_str());
     writer->SetInputData(data);
     writer->GetCompressor()->SetCompressionLevel(1); // VTK's default takes twice the time for a tenth less space

@@ -11,7 +11,7 @@ struct RigidColumns {
     std::vector<double> position[3];    // [m]
     std::vector<double> orientation[4]; // w, x, y, z
     std::vector<double> velocity[6];    // velocity [m/s], then angular velocity [1/s]
-    std::vector<double> mass;           // [kg]
+    std::vector<double> mass;           // [kg], as of inertia, with what is added to it
     std::vector<double> inertia[3];     // about the global axes, of a body that turns in space about its own [kg m²]
 
     void resize(int count);

@@ -18,6 +18,7 @@ moved to both sides along the mode show whether it is elastic, and give the squa
 with the weights that it bears (Rayleigh's quotient).
 """
 
+import functools
 import math
 
 from yade import O
@@ -42,6 +43,22 @@ INSTANT, NEAR = 1e-30, 0.03
 SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER, SLOW_LOOKS = 1e-6, 5e-4, 5.0, 32, 1.1, 400
 
 
+def _ofTrueInertia(measure):
+    """A measurement on a structure without added inertia, after which the scene is as before."""
+
+    @functools.wraps(measure)
+    def measured(structure, *how):
+        before = saveScene("null")
+        if not structure.scheme.useTrueInertia():
+            return measure(structure, *how)
+        try:
+            return measure(structure, *how)
+        finally:
+            loadScene(before)
+
+    return measured
+
+
 def smallPeriod(structure, direction, longest):
     """The first period of small vibrations, which a smaller push does not change, and the share of
     gravity with which it was found [-]. Parameters as in :func:`firstPeriod`."""
@@ -54,6 +71,7 @@ def smallPeriod(structure, direction, longest):
     return found, smaller
 
 
+@_ofTrueInertia
 def firstPeriod(structure, direction, longest, share=SHARES[0]):
     """The first period of a structure at rest along a direction in the time of the scene [s], or
     None if none is found, in the steps of a period or some more.
@@ -133,6 +151,7 @@ def _elasticPeriod(structure, direction, share):
     return None
 
 
+@_ofTrueInertia
 def firstMode(structure, direction, longest):
     """Displacements of all bodies along a direction in the first mode of a structure at rest, by
     YADE's ids, the largest amount 1; None if no first period is found. Afterwards the scene is as
@@ -159,6 +178,7 @@ def firstMode(structure, direction, longest):
     return [one / largest for one in shape]
 
 
+@_ofTrueInertia
 def buckles(structure, direction):
     """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`,
     or within a longer period on springs; and how many steps it took to see that. Afterwards the

@@ -3,11 +3,12 @@
 
 from yade import O
 
-from .._masonry import timeStepLimit
+from .._masonry import bodyEigenvalues, timeStepLimit
 from ..terminal import say
 from .engines import engine
 
 MAX_SCALING = 50.0  # of masses that is chosen by itself: more gained nothing in any wall
+LEAST_GAIN = 1.3  # of the time step by added inertia, else none is added; in bonds below 1.25 [-]
 
 
 class Scheme:
@@ -15,6 +16,7 @@ class Scheme:
 
     - ``limit``: the stable limit of the time step under the present damping [s]
     - ``massScaling``: selective scaling of masses by the options [-]
+    - ``addedInertia``: share of the inertia that stages at rest add [-]
     """
 
     def __init__(self, args, zones, contacts):
@@ -22,8 +24,9 @@ class Scheme:
         self.integrator, self.joints = engine("integrator"), engine("joints")
         self.damp(args.damping, args.damping_kind)
 
-    def begin(self):
-        """Choose masses and time step, when all joints are there.
+    def begin(self, addsInertia):
+        """Choose masses and time step, when all joints are there. ``addsInertia``: whether the
+        scene's engines can.
 
         ``--mass-scaling auto`` compares the limit of the time step with true masses with that of
         rigid motions alone. Waves through a brick get slower by the root of 1 + massScaling, so the
@@ -38,7 +41,49 @@ class Scheme:
             least = round((limits[1] / limits[0]) ** 2 - 1, 1)
             self.massScaling = min(MAX_SCALING, max(0.0, least))
         self.scaleMasses(self.massScaling)
-        self._usualLimit = self.chooseTimeStep()
+        limit = self.chooseTimeStep()
+        #: stable limits without and with added inertia [s]
+        self._limits, self._factors, self.addedInertia = (limit, limit), [], 0.0
+        if addsInertia:
+            self._addInertia(self.args.added_inertia)
+
+    def _addInertia(self, share):
+        """Choose factors on the inertia of the bodies that set the time step.
+
+        All bodies get the same bound of their eigenvalues while the others are held, half of which
+        bounds that of the scene, as low as the share of the added mass in the whole allows.
+        """
+        alone = {b: value for b, value in bodyEigenvalues().items() if value > 0}
+        mass = {b: O.bodies[b].state.mass for b in alone}
+        stiff = sorted(alone, key=alone.get, reverse=True)
+        whole, scaled, product = sum(mass.values()), 0.0, 0.0
+        for body, following in zip(stiff, [*stiff[1:], None]):
+            scaled += mass[body]
+            product += mass[body] * alone[body]
+            bound = product / (scaled + share * whole)
+            if following is None or bound >= alone[following]:
+                break
+        else:
+            return
+        factors = [max(1.0, alone.get(b, 0.0) / bound) for b in range(len(O.bodies))]
+        self.integrator.inertiaFactors = factors
+        longer = timeStepLimit()
+        if longer < LEAST_GAIN * self.limit:
+            self.integrator.inertiaFactors = []
+            return
+        added = sum((factors[b] - 1) * m for b, m in mass.items())
+        self._limits, self._factors = (self.limit, longer), factors
+        self.addedInertia = added / whole
+        self.chooseTimeStep(longer)
+
+    def useTrueInertia(self):
+        """Have no added inertia, and the time step that this allows, until the state of before is
+        loaded again. Returns whether there was any."""
+        if not (self._factors and self.integrator.inertiaFactors):
+            return False
+        self.integrator.inertiaFactors = []
+        O.dt *= self._limits[0] / self._limits[1]
+        return True
 
     def damp(self, damping, kind, massDamping=0.0, stiffnessDamping=0.0):
         """Choose the damping from now on; :meth:`chooseTimeStep` follows it.
@@ -66,13 +111,17 @@ class Scheme:
             )
             self.scaleMasses(0.0)
 
-    def dampByOptions(self):
+    def dampByOptions(self, inRealTime=False):
         """Choose damping and masses of the options, and the time step if a stage has chosen another
-        one. A time step that the script sets stays."""
+        one. A time step that the script sets stays. No inertia is added to what is
+        ``inRealTime``."""
         self.damp(self.args.damping, self.args.damping_kind)
         self.scaleMasses(self.massScaling)
-        if self.limit != self._usualLimit:
-            self.chooseTimeStep(self._usualLimit)
+        if self._factors:
+            self.integrator.inertiaFactors = [] if inRealTime else self._factors
+        limit = self._limits[not inRealTime]
+        if self.limit != limit:
+            self.chooseTimeStep(limit)
 
     def chooseTimeStep(self, limit=None, fraction=None):
         """Choose the time step for the present damping. Returns the stable limit.

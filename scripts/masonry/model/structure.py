@@ -71,7 +71,7 @@ class Structure:
                 self._addPlaten(target, loadingBlock)
         self.connectors.attach()
         connected()  # also what needs no joint
-        self.scheme.begin()
+        self.scheme.begin(not (self.zones or self.contacts or self.description.functors))
         self._joinRecords()
         self.supports = Supports(self)
         self.loading.begin()

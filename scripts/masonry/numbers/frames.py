@@ -2,8 +2,8 @@
 """Frames for ParaView that MasonryVtkRecorder wrote, read again without YADE and VTK.
 
 The Python modules of VTK (python3-vtk9 or python3-paraview) can end a process in which YADE runs
-with a VTK of its own. MasonryVtkRecorder writes one kind of file, with all numbers appended in
-base64 and compressed by zlib.
+with a VTK of its own. MasonryVtkRecorder writes one kind of file, with all numbers appended and
+compressed by zlib; before version 3 they were in base64.
 """
 
 import base64
@@ -19,6 +19,7 @@ import numpy as np
 
 from ..arguments import FilePath, Names, number, oneOf, validated, whole
 from ..errors import Refused
+from .files import readWhole
 
 #: Files of blocks, of joints, or of ties and springs.
 Kind = Annotated[str, oneOf("blocks", "joints", "connectors")]
@@ -42,7 +43,7 @@ def framePaths(directory: FilePath, kind: Kind) -> list[str]:
 def frameTimes(directory: FilePath) -> list[float]:
     """Times of all frames of a run, as joints.pvd has them [s]."""
     path = os.path.join(directory, "joints.pvd")
-    return _read(path, lambda root: [float(s.get("timestep")) for s in root.iter("DataSet")])
+    return _read(path, lambda root, _: [float(s.get("timestep")) for s in root.iter("DataSet")])
 
 
 @validated
@@ -60,7 +61,7 @@ def readFrame(
 
     :param names: of the arrays that are needed, ``points`` and ``cells`` among them; None: all
     """
-    return _read(_pathOf(directory, kind, number), lambda root: _frame(root, names))
+    return _read(_pathOf(directory, kind, number), lambda *file: _frame(*file, names))
 
 
 @validated
@@ -85,9 +86,11 @@ def _pathOf(directory, kind, number):
 
 
 def _read(path, parsed):
-    """What a function makes of the root of an XML file. Raises Refused if it is damaged."""
+    """What a function makes of the root of an XML file and of the bytes of its AppendedData. Raises
+    Refused if it is damaged."""
     try:
-        return parsed(ElementTree.parse(path).getroot())
+        head, mark, appended = readWhole(path).partition(b"<AppendedData")
+        return parsed(ElementTree.fromstring(head + b"</VTKFile>" * bool(mark)), appended)
     except OSError as error:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
     except Exception as error:  # whatever a damaged file leads to
@@ -110,8 +113,8 @@ def asFrame(found: Any, names: Sequence[str] | None = None) -> dict[str, Any]:
 POLYHEDRON, TETRAHEDRON = 42, 10  # numbers of VTK for the cells of blocks
 
 
-def _surfaces(root):
-    piece, read = _opened(root)
+def _surfaces(*file):
+    piece, read = _opened(*file)
     cells = {a.get("Name"): read(a) for a in piece.findall("Cells/DataArray")}
     types, ends, corners = cells["types"], cells["offsets"], cells["connectivity"]
     rigid = types == POLYHEDRON
@@ -156,20 +159,23 @@ def _newFaces(cells):
     return faces, np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
 
 
-def _opened(root):
+def _opened(root, appended):
     form = root.get("compressor"), root.get("byte_order")
     if form != ("vtkZLibDataCompressor", "LittleEndian"):
         raise ValueError("it was not written by MasonryVtkRecorder")
-    appended = root.find("AppendedData")
-    if appended.get("encoding") != "base64":
-        raise ValueError("its numbers are not in base64")
-    text = appended.text.strip()[1:]  # the first letter is an underscore
+    encoding, _, data = appended.partition(b"_")
+    isRaw = b'"raw"' in encoding
+    if not (isRaw or b'"base64"' in encoding):
+        raise ValueError("its numbers are not appended")
+    letters = lambda count: count if isRaw else -(-count // 3) * 4  # of bytes in base64
+    decode = lambda text: text if isRaw else base64.b64decode(text)
+    taken = lambda at, count: (decode(data[at : at + letters(count)]), at + letters(count))
     size = {"UInt32": "I", "UInt64": "Q"}[root.get("header_type")]
-    return root[0].find("Piece"), lambda array: _array(array, text, size)
+    return root[0].find("Piece"), lambda array: _array(array, taken, size)
 
 
-def _frame(root, names):
-    piece, read = _opened(root)
+def _frame(root, appended, names):
+    piece, read = _opened(root, appended)
     data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
     found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}
     frame = {n: read(a) for n, a in found.items() if names is None or n in names}
@@ -190,19 +196,19 @@ def _frame(root, names):
     return frame
 
 
-def _array(array, text, size):
+def _array(array, taken, size):
     """The numbers of a DataArray, a row a tuple if it has several components.
 
-    Its text is a head and the data, each encoded on its own. The head has the number of blocks, the
-    bytes of a full block and of the last one before compression, and the compressed bytes of each.
+    It is a head and the data, each encoded on its own. The head has the number of blocks, the bytes
+    of a full block and of the last one before compression, and the compressed bytes of each.
+
+    :param taken: function of a place and a number of bytes, which gives these, and the place behind
     """
     start, width = int(array.get("offset")), struct.calcsize(size)
-    letters = lambda count: -(-count // 3) * 4  # of bytes in base64
-    decode = lambda at, count: base64.b64decode(text[at : at + letters(count)])
-    blocks = struct.unpack_from("<" + size, decode(start, width))[0]
-    head = width * (3 + blocks)
-    sizes = struct.unpack_from(f"<{3 + blocks}{size}", decode(start, head))[3:]
-    data, ends = decode(start + letters(head), sum(sizes)), np.cumsum(sizes)
+    blocks = struct.unpack_from("<" + size, taken(start, width)[0])[0]
+    head, start = taken(start, width * (3 + blocks))
+    sizes = struct.unpack_from(f"<{3 + blocks}{size}", head)[3:]
+    data, ends = taken(start, sum(sizes))[0], np.cumsum(sizes)
     parts = [zlib.decompress(data[b - n : b]) for n, b in zip(sizes, ends)]
     numbers = np.frombuffer(b"".join(parts), "<" + TYPES[array.get("type")])
     components = int(array.get("NumberOfComponents") or 1)

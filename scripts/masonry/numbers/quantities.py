@@ -628,6 +628,15 @@ QUANTITIES: tuple[Quantity, ...] = (
         group="cost",
     ),
     Q(
+        "added_inertia",
+        "added inertia",
+        "Share of the inertia of all blocks that was added to those that set the time step, in all"
+        " stages but those in real time (--added-inertia).",
+        "the run",
+        group="cost",
+        share=True,
+    ),
+    Q(
         "steps",
         "time steps",
         "How many were taken.",

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 import time
+import zlib
 from dataclasses import field, fields, is_dataclass
 from types import SimpleNamespace
 from typing import Any
@@ -28,6 +29,7 @@ from ..terminal import say
 from .run_state import RunState
 
 NAME = "run.checkpoint"  # in the folder of a run
+COMPRESSED = b"x"  # begins what zlib has compressed
 #: Options that say where results are, and are no part of what was run.
 NO_OPTIONS = "resume", "out", "saved"
 
@@ -55,7 +57,7 @@ def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
         ) from None
     data = saveScene(kept)
     with replaced(path, "wb") as f:
-        f.write(data)
+        f.write(zlib.compress(data, 1))
     folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
     try:
         os.fsync(folder)
@@ -89,6 +91,11 @@ def readState(path: FilePath) -> tuple[bytes, Any]:
     :func:`readCheckpoint`."""
     with _says(path):
         data = readWhole(path)
+        if data[:1] == COMPRESSED:  # else as saveScene gives it, as in files of before
+            whole = zlib.decompressobj()
+            data = whole.decompress(data)
+            if not whole.eof:
+                raise ValueError("is cut short: its compressed bytes do not end")
         return data, json.loads(savedText(data))
 
 
@@ -99,6 +106,8 @@ def _says(path):
         yield
     except MemoryError:
         raise ValueError(f"{path} is too large for the memory") from None
+    except zlib.error as error:
+        raise ValueError(f"{path} is damaged: {error}") from None
     except (ValueError, OverflowError) as error:
         raise ValueError(f"{path} {error}") from None
 

@@ -227,7 +227,7 @@ class _Command:
                 running.sceneState.put(state.before if resumedHere else state.now)
         state.begun, state.before = self.before + 1, stateOf(scene)
         scheme, follows = scene.model.scheme, scene.description.contact is not None
-        scheme.dampByOptions()
+        scheme.dampByOptions(traits.dynamic)
         scheme.joints.impacts = traits.dynamic
         if follows:
             scheme.keepStep()

@@ -19,6 +19,7 @@ void BodyColumns::read(const yade::Scene& scene) {
         column.assign(count, 0);
     for (auto& column : fromReference)
         column.assign(count, 0);
+    weighed.assign(count, 0);
     seen_.resize(count);
     isUnit.assign(count, false);
     bodies_.assign(count, nullptr);
@@ -51,8 +52,8 @@ bool BodyColumns::sameFrame(int b) const {
     const auto& s = *states_[b];
     bool same = s.refOri.w() == fromReference[0][b];
     for (int d = 0; d < 3; ++d)
-        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] && s.inertia[d] == inertia[d][b] &&
-               s.refPos[d] == referencePosition[d][b];
+        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] &&
+               s.inertia[d] * inertiaFactor(b) == inertia[d][b] && s.refPos[d] == referencePosition[d][b];
     return same;
 }
 
@@ -68,20 +69,32 @@ void BodyColumns::take(int b) {
     seen.blocked = s.blockedDOFs;
     seen.damped = s.isDamped;
     seen.axes = ~s.blockedDOFs & 63;
-    mass[b] = s.mass;
+    weighed[b] = s.mass;
+    mass[b] = s.mass * inertiaFactor(b);
     orientation[0][b] = s.ori.w();
     for (int d = 0; d < 3; ++d) {
         position[d][b] = s.pos[d];
         orientation[1 + d][b] = s.ori.coeffs()[d];
         velocity[d][b] = s.vel[d];
         velocity[3 + d][b] = s.angVel[d];
-        inertia[d][b] = s.inertia[d];
+        inertia[d][b] = s.inertia[d] * inertiaFactor(b);
         referencePosition[d][b] = s.refPos[d];
         seen.axes |= (s.vel[d] != 0) << d | (s.angVel[d] != 0) << (3 + d);
     }
     fromReference[0][b] = s.refOri.w();
     for (int d = 0; d < 3; ++d)
         fromReference[1 + d][b] = -s.refOri.vec()[d];
+}
+
+void BodyColumns::scaleInertia(const std::vector<double>& factors) {
+    if (factors == factors_) return;
+    factors_ = factors;
+    for (int b = 0; b < size(); ++b) {
+        if (!has(b)) continue;
+        mass[b] = weighed[b] * inertiaFactor(b);
+        for (int d = 0; d < 3; ++d)
+            inertia[d][b] = state(b).inertia[d] * inertiaFactor(b);
+    }
 }
 
 void BodyColumns::setPlace(int b, const yade::Vector3r& place, const yade::Quaternionr& turned) {

@@ -65,9 +65,14 @@ public:
     void setPlace(int body, const yade::Vector3r& place, const yade::Quaternionr& turned);
     // Reads all of a body from the host's State.
     void take(int body);
+    // Takes the factors on the inertia of bodies, see Integrator.
+    void scaleInertia(const std::vector<double>& factors);
+    double inertiaFactor(int body) const { return body < int(factors_.size()) ? factors_[body] : 1; }
+    bool isScaled() const { return !factors_.empty(); }
 
     std::vector<double> referencePosition[3]; // [m]
     std::vector<double> fromReference[4];     // inverse of the reference orientation: w, x, y, z
+    std::vector<double> weighed;              // mass that has a weight [kg]
 
     std::vector<unsigned char> isUnit; // whether the body is a deformable unit, which Zones moves
 
@@ -82,6 +87,7 @@ private:
     bool sameFrame(int body) const; // compares inertia and reference place
 
     std::vector<Seen> seen_;
+    std::vector<double> factors_;
     std::vector<Prescribed> earlier_;
     std::vector<unsigned char> taken_; // whether earlier_ holds something
     std::vector<const yade::Body*> bodies_;
@@ -107,7 +113,7 @@ inline bool BodyColumns::samePlace(int b) const {
 inline bool BodyColumns::sameMotion(int b) const {
     const auto& s = *states_[b];
     const auto& seen = seen_[b];
-    std::uint64_t differs = bitsOf(s.mass) ^ bitsOf(mass[b]);
+    std::uint64_t differs = bitsOf(s.mass) ^ bitsOf(weighed[b]);
     for (int d = 0; d < 3; ++d)
         differs |= (bitsOf(s.vel[d]) ^ bitsOf(velocity[d][b])) | (bitsOf(s.angVel[d]) ^ bitsOf(velocity[3 + d][b]));
     return (differs | (s.blockedDOFs ^ seen.blocked) | std::uint64_t(s.isDamped != seen.damped)) == 0;

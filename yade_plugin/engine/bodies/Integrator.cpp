@@ -4,13 +4,22 @@
 #include "BodyStep.hpp"
 #include "Load.hpp"
 #include "common/Parallel.hpp"
+#include "common/Text.hpp"
+#include <cmath>
 #include <cstdint>
 
 namespace masonry {
 
 std::vector<std::string> Integrator::problems() const {
-    if (combined() || dampingKind == "local") return {};
-    return {"dampingKind '" + dampingKind + "' must be 'combined' or 'local'"};
+    std::vector<std::string> found;
+    if (!combined() && dampingKind != "local")
+        found.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
+    for (double factor : inertiaFactors)
+        if (!(factor >= 1 && factor < HUGE_VAL)) {
+            found.push_back("inertiaFactors has " + text(factor) + ", must be a finite number of at least 1");
+            break;
+        }
+    return found;
 }
 
 std::vector<Vector3r> Integrator::lastForces() {
@@ -37,6 +46,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
         throw std::invalid_argument(nameOf(ClassRole::Integrator) + " remembers forces of " +
                                     std::to_string(last_[0].size()) + " bodies, the scene has " +
                                     std::to_string(count));
+    followInertia(bodies);
     const auto on = scene.forces().sums(count);
     combines_ = combined();
     for (auto& column : last_)
@@ -70,12 +80,30 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     if (!shaking.samples.empty()) ++shaking.steps;
 }
 
+// What the kinetic energy changes by with the inertia of bodies is an input. Velocities stay.
+void Integrator::followInertia(BodyColumns& bodies) {
+    bodies.scaleInertia(inertiaFactors);
+    if (inertiaFactors == factorsBefore) return;
+    for (int b = 0; b < bodies.size(); ++b) {
+        const double before = factorOf(factorsBefore, b), change = inertiaFactor(b) - before;
+        if (change == 0 || !bodies.has(b) || bodies.isUnit[b]) continue;
+        auto& s = bodies.state(b);
+        s.angMom *= 1 + change / before;
+        const Vector3r spin = bodies.spins(b) ? Vector3r(s.ori.conjugate() * s.angVel) : s.angVel;
+        for (int d = 0; falling && d < 3; ++d) {
+            if (!bodies.isBlocked(b, d)) external += 0.5 * change * s.mass * s.vel[d] * s.vel[d];
+            if (!bodies.isBlocked(b, 3 + d)) external += 0.5 * change * s.inertia[d] * spin[d] * spin[d];
+        }
+    }
+    factorsBefore = inertiaFactors;
+}
+
 // The power of forces and weight on a body along its blocked axes with its present velocity, less that with the
 // velocity of its last step [W]. The work of a step is done half with the forces before it and half with those after
 // it, both times with its own velocity, which a script may have changed since.
 double Integrator::gainedPower(const BodyColumns& bodies, int b, const Vector3r& force, const Vector3r& torque) const {
     const auto& before = *bodies.earlier(b);
-    const Vector3r on[] = {force + bodies.mass[b] * gravity, torque};
+    const Vector3r on[] = {force + bodies.weighed[b] * gravity, torque};
     double power = 0;
     for (int d = 0; d < 6; ++d) {
         const double now = bodies.isBlocked(b, d) ? bodies.velocity[d][b] : 0;
@@ -134,6 +162,8 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
                 motion.force[d][i] = on[3 * i];
                 motion.free[d][i] = blocked[i] >> d & 1 ? 0.0 : 1.0;
             }
+            for (int i = 0; bodies.isScaled() && d < 3 && i < count; ++i) // added inertia has no weight
+                motion.force[d][i] -= (bodies.mass[first + i] - bodies.weighed[first + i]) * gravity[d];
             for (int i = 0; turning && d >= 3 && i < count; ++i)
                 if (motion.inSpace[i] != 0) motion.force[d][i] = motion.free[d][i] = 0;
         }
@@ -166,7 +196,7 @@ void Integrator::findWeights(const BodyColumns& bodies, int first, int count, Su
     // The three sums side by side: an addition then waits for none of another sum.
     double moment[3] = {};
     for (int i = 0; i < count; ++i) {
-        const double mass = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.mass[first + i] : 0;
+        const double mass = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.weighed[first + i] : 0;
         double falls = 0; // gravity times displacement
         for (int d = 0; d < 3; ++d) {
             const double moved = now[d][i] - before[d][i];

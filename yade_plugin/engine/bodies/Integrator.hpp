@@ -20,6 +20,12 @@ public:
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
     GroundMotion shaking;                     // sets the gravity of every step while it has a record
 
+    // Factors on mass and moments of inertia of bodies by their ids, without a weight [-]; beyond its end 1. For states
+    // of rest: inertia of the few bodies that set the time step makes it longer, and changes no force at rest.
+    std::vector<double> inertiaFactors;
+    std::vector<double> factorsBefore; // in the last step
+    double inertiaFactor(int body) const { return factorOf(inertiaFactors, body); }
+
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
 
@@ -41,6 +47,10 @@ private:
     // Makes a step of bodies `first` up to, but without, `beyond`.
     Sums advancePiece(const yade::Scene&, BodyColumns&, const Vector3r* forces, const Vector3r* torques, int first,
                       int beyond);
+    static double factorOf(const std::vector<double>& factors, int body) {
+        return body < int(factors.size()) ? factors[body] : 1;
+    }
+    void followInertia(BodyColumns&);
     double gainedPower(const BodyColumns&, int body, const Vector3r& force, const Vector3r& torque) const;
     void findWeights(const BodyColumns&, int first, int count, Sums&) const;
 

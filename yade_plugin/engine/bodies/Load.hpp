@@ -5,6 +5,8 @@
 
 namespace masonry {
 
+class Integrator;
+
 using yade::Vector3r;
 
 // What engines of others and permanent forces load a rigid body with in a step, about its centre.
@@ -57,7 +59,7 @@ public:
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
     // Adds force and reaction to the forces of the present step. `gravity` is that of the integrator [m/s²].
-    void act(yade::Scene&, const Vector3r& gravity);
+    void act(yade::Scene&, const Vector3r& gravity, const Integrator*);
     // Displacement of the loaded point since the reference state [m].
     Vector3r displacementIn(const yade::Scene&) const;
 

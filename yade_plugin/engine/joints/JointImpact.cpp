@@ -27,7 +27,8 @@ Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const Joi
         Matrix3r own = -cross * inverseInertia(s) * cross;
         for (int d = 0; d < 3; ++d)
             if (!by.bodies.isBlocked(body, d)) own(d, d) += 1 / s.mass;
-        changes += own * (by.jointedArea[body] / (part * shapes.faceArea[shapes.face(joint)]));
+        changes +=
+            own * (by.jointedArea[body] / (by.bodies.inertiaFactor(body) * part * shapes.faceArea[shapes.face(joint)]));
     }
     for (int d = 0; d < 3; ++d)
         if (changes(d, d) == 0) changes(d, d) = 1; // nothing moves along this axis

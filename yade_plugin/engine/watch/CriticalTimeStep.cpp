@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "CriticalTimeStep.hpp"
 #include "Dynamics.hpp"
+#include "engine/bodies/Integrator.hpp"
 #include "engine/bodies/Load.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "engine/contacts/Contacts.hpp"
@@ -14,11 +15,12 @@ namespace {
 struct KnownEigenvalue {
     long revision = -1;
     double damping = 0, zoneDamping = 0, massScaling = 0;
+    double inertia = 0;    // sum of the factors on it [-]
     double connectors = 0; // sum of their stiffness, with that of testing machines
     double value = 0;      // [1/s²]
     bool isForSame(const KnownEigenvalue& o) const {
         return revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               massScaling == o.massScaling && connectors == o.connectors;
+               massScaling == o.massScaling && inertia == o.inertia && connectors == o.connectors;
     }
 };
 
@@ -41,9 +43,16 @@ double timeStepLimit(SceneStore& store, bool anew) {
             stiffnessOfConnectors += connectors->stiffnessOf(c).sum() + connectors->rotationalStiffnessOf(c).sum();
     for (const auto* load : store.loads)
         stiffnessOfConnectors += load->machineStiffness().sum();
+    double inertia = 0;
+    for (int b = 0; store.integrator && b < int(store.integrator->inertiaFactors.size()); ++b)
+        inertia += store.integrator->inertiaFactors[b];
     auto& known = store.kept<KnownEigenvalue>();
-    KnownEigenvalue now{store.stiffnessRevision(), store.damping(), store.zones ? store.zones->damping : 0,
-                        store.zones ? store.zones->massScaling : 0, stiffnessOfConnectors};
+    KnownEigenvalue now{store.stiffnessRevision(),
+                        store.damping(),
+                        store.zones ? store.zones->damping : 0,
+                        store.zones ? store.zones->massScaling : 0,
+                        inertia,
+                        stiffnessOfConnectors};
     const auto limit = [&] {
         double all = now.value;
         for (auto* one : store.contacts)
@@ -82,6 +91,8 @@ void followTimeStep(SceneStore& store) {
         if (dt > wanted || growth * dt < wanted) dt = wanted;
     }
 }
+
+std::map<int, double> eigenvaluesOfBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).highestAlone(); }
 
 std::pair<int, int> limitingBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).stiffest(); }
 

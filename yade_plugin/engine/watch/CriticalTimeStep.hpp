@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The largest time step for which a scene is stable.
 #pragma once
+#include <map>
 #include <string>
 #include <utility>
 
@@ -51,6 +52,10 @@ void followTimeStep(SceneStore&);
 
 // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.
 std::pair<int, int> limitingBodies(SceneStore&);
+
+// The largest eigenvalue of every rigid body with a joint while all others are held, by its id [1/s²]. That of the
+// scene is at most twice the largest of these, because every joint acts on two bodies.
+std::map<int, double> eigenvaluesOfBodies(SceneStore&);
 
 // A text for messages: the scene's time step, its limit, and what sets the limit.
 std::string describedLimit(SceneStore&);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Dynamics.hpp"
 #include "engine/bodies/BodyCheck.hpp"
+#include "engine/bodies/Integrator.hpp"
 #include "engine/bodies/Load.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "motion/LargestEigenvalue.hpp"
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -48,8 +50,9 @@ void Dynamics::addBody(int id, const char* holder) {
     if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) return;
     if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
     const State& s = *body.state;
+    const double factor = store_.integrator ? store_.integrator->inertiaFactor(id) : 1;
     for (int d = 0; d < 6; ++d)
-        addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store_.damping() : 0, isBlocked(s, d));
+        addDegree(factor * (d < 3 ? s.mass : s.inertia[d - 3]), s.isDamped ? store_.damping() : 0, isBlocked(s, d));
 }
 
 void Dynamics::addBodies(const JointView& joint) {
@@ -324,6 +327,16 @@ std::pair<int, int> Dynamics::stiffest() const {
     const auto most = std::max_element(energies.begin(), energies.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     return most == energies.end() ? std::pair(-1, -1) : most->first;
+}
+
+std::map<int, double> Dynamics::highestAlone() const {
+    std::map<int, double> found;
+    for (const auto& [body, first] : firstOfBody_) {
+        const Eigen::MatrixXd own = matrix_.block(first, first, 6, 6);
+        found[body] =
+            common_ * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(own, Eigen::EigenvaluesOnly).eigenvalues()[5];
+    }
+    return found;
 }
 
 } // namespace masonry

@@ -31,6 +31,8 @@ public:
     // The two bodies whose joint has most of the elastic energy of the highest mode, or twice the body of the unit that
     // has.
     std::pair<int, int> stiffest() const;
+    // Of every rigid body while all others are held, by its id [1/s²].
+    std::map<int, double> highestAlone() const;
 
     // Of a degree of freedom: sqrt(1 / mass), 0 where it is blocked.
     const std::vector<double>& scale() const { return scale_; }

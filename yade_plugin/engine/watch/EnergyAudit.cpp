@@ -236,9 +236,10 @@ double motionOf(SceneStore& store) {
         if (!body || !body->state || (zones && zones->unitOf(body->id))) continue;
         const State& s = *body->state;
         const Vector3r spin = rotationRestrained(s) ? s.angVel : Vector3r(s.ori.conjugate() * s.angVel);
+        const double factor = store.integrator ? store.integrator->inertiaFactor(int(body->id)) : 1;
         for (int i = 0; i < 3; ++i) {
-            if (!isBlocked(s, i)) twice += s.mass * s.vel[i] * s.vel[i];
-            if (!isBlocked(s, 3 + i)) twice += s.inertia[i] * spin[i] * spin[i];
+            if (!isBlocked(s, i)) twice += factor * s.mass * s.vel[i] * s.vel[i];
+            if (!isBlocked(s, 3 + i)) twice += factor * s.inertia[i] * spin[i] * spin[i];
         }
     }
     if (!zones) return 0.5 * twice;
