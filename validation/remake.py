@@ -405,7 +405,7 @@ def ofStudies():
             "open_tests",
             tuple(
                 inYade(f"open_tests/{name}.py")
-                for name in ("shear_walls", "panels", "strips", "specimens")
+                for name in ("shear_walls", "panels", "strips", "specimens", "eccentric_prisms")
             ),
             (),
             ("validation/open_tests/*.py", *RIGID, *DEFORMABLE),
