@@ -78,6 +78,6 @@ class Answers:
                 excess = 100 * (reached / bound - 1)
                 yield (
                     f"{what}, {reached:.4g} {unit}, is {excess:.1f} % above the upper bound of"
-                    f" limit analysis, {bound:.4g} {unit}: is the run too fast, or does the"
-                    " structure move far?"
+                    f" limit analysis, {bound:.4g} {unit}: is the run too fast, does the structure"
+                    " move far, or does a machine press more than press() says?"
                 )

@@ -6,8 +6,8 @@ yade -n -x validation/dry_joint_walls/rig.py --rig 37 --out
 results/validation/dry_joint_walls/rig_37
 
 37 kN/mm is the stiffness that makes the start of the plain model's curve that of the test
-(README.md, Loops); it was not measured. ``--rig 0`` is a base that does not give way, ``--friction``
-and ``--uplift`` are those of ``scene.press``. Prints the stiffness of the first cycle, both peaks,
+(README.md, Loops); it was not measured. ``--rig 0`` is a base that does not give way, ``--friction``,
+``--uplift`` and ``--guides`` are those of ``scene.press``. Prints the stiffness of the first cycle, both peaks,
 and the work of the cycles beside those of the test.
 """
 
@@ -44,6 +44,9 @@ parser.add_argument("--friction", metavar="F", type=float, default=0.0, help="of
 parser.add_argument(
     "--uplift", metavar="KN_PER_MM", type=float, default=0.0, help="stiffness of the press"
 )
+parser.add_argument(
+    "--guides", metavar="KN_PER_MM", type=float, help="of the press (default: nearly rigid)"
+)
 parser.set_defaults(crack_surfaces="off", points="6,6")
 WALL = parser.parse_args().wall
 parser.set_defaults(history=measured.historyPath(WALL))
@@ -67,7 +70,8 @@ scene = Scene(
 )
 scene.platen("bottom", springs={"x": 1e6 * args.rig} if args.rig else None)
 top = scene.platen("top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x")
-machine = dict(friction=args.friction, stiffness=1e6 * args.uplift)
+guides = args.guides and 1e6 * args.guides
+machine = dict(friction=args.friction, stiffness=1e6 * args.uplift, guides=guides)
 scene.press(top, level * 1e3 / BLOCK[1], riding=False, **machine)
 scene.settle(damping="local", record=False)
 scene.push(top)

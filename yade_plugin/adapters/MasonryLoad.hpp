@@ -50,7 +50,7 @@ public:
               number("N/m", "With which the load of a testing machine follows the point against the direction")
                   .atLeast(0));
         visit("friction", &L::friction,
-              number("", "Share of this load up to which friction of the machine keeps it back").atLeast(0).below(1));
+              number("-", "Share of this load up to which friction of the machine keeps it back").atLeast(0).below(1));
         visit("guideStiffness", &L::guideStiffness,
               number("N/m", "Of the guides of the machine until their friction slips").atLeast(0));
         visit("engaged", &L::engaged, described("Whether stiffness and friction act; they begin without force"));

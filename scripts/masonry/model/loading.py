@@ -330,7 +330,7 @@ def _machineOf(target):
         direction=-Vector3.UnitZ,
         stiffness=target.stiffness,
         friction=target.friction,
-        guideStiffness=target.friction * load / GUIDE_TRAVEL,
+        guideStiffness=target.guides or target.friction * load / GUIDE_TRAVEL,
     )
 
 

@@ -63,6 +63,7 @@ def press(
     riding: bool = True,
     friction: Annotated[float, number("", 0, 1, below=True)] = 0.0,
     stiffness: Annotated[float, number("N/m", 0, MAX_STIFFNESS)] = 0.0,
+    guides: Annotated[float, number("N/m", 0, MAX_STIFFNESS, above=True)] | None = None,
 ) -> None:
     """Press a platen, once, on the bricks below it. The load grows in :meth:`settle`, and stays.
 
@@ -71,11 +72,13 @@ def press(
         rollers
     :param friction: of jack and guides of a testing machine, over its load (that on the bricks
         without the weight of the platen) [-]. When the platen rises, up to this share is added to
-        the load, when it sinks, taken off. It is reached after 0.02 mm (:data:`GUIDE_TRAVEL`)
+        the load, when it sinks, taken off
     :param stiffness: with which the load of a testing machine follows the uplift of the platen
         where it acts [N/m]; the load is never below 0. Both begin at rest under the whole load, in
         :meth:`settle` or a later :meth:`press`; 0 is a dead load. Limit analysis has the load
         without them
+    :param guides: stiffness of jack and guides until the friction slips [N/m]; None: it slips after
+        0.02 mm (:data:`masonry.model.loading.GUIDE_TRAVEL`), nearly at once
     """
     if not stress > 0 and friction + stiffness > 0:
         raise ValueError(f"press: stress {stress:g} Pa of a testing machine must be above 0")
@@ -86,7 +89,7 @@ def press(
             " stress once, or press it again after the first stage"
         )
     platen.pressed, platen.riding = float(stress), riding
-    platen.friction, platen.stiffness = friction, stiffness
+    platen.friction, platen.stiffness, platen.guides = friction, stiffness, guides
 
 
 @describes

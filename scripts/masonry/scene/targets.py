@@ -30,6 +30,7 @@ class Target:
     riding: bool = True  # the load moves with the platen
     friction: float = 0.0  # of the machine that presses, over its load [-]
     stiffness: float = 0.0  # with which its load follows uplift [N/m]
+    guides: float | None = None  # stiffness of jack and guides until that friction slips [N/m]
     joined: bool = True  # a platen has joints with what it touches
     line: bool = False  # it is a bar from which springs hold bricks along a line
 
