@@ -178,13 +178,11 @@ class Supports:
         thrust, load = (now - was for now, was in zip(self.alongWall(across), self.unloaded))
         if thrust <= 0 or load <= 0:
             return 0.0, 0.0
-        along, ends = self._endsOf(across)
-        bricks = self.description.bricks
+        (along, ends), bricks = self._endsOf(across), self.description.bricks
         low, high = ([bricks[t.brick] for t in end] for end in ends)
         far = max(max(_reach(b, across)) for b in low + high)
-        low, high = min(max(_reach(b, along)) for b in low), max(
-            min(_reach(b, along)) for b in high
-        )
+        low = min(max(_reach(b, along)) for b in low)
+        high = max(min(_reach(b, along)) for b in high)
         middle = [b for b in bricks if 2 * min(p := _reach(b, along)) <= low + high <= 2 * max(p)]
         rise = far - min((min(_reach(b, across)) for b in middle), default=far)
         share = 8 * thrust * rise / load / max(high - low, 1e-9)
