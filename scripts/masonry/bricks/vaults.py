@@ -161,19 +161,19 @@ def CrossVault(
             heads = [edge - width * (rows - n - shift) for n in range(rows)]
             ends = [0.0, *(y for y in heads if far + width / 4 < y < edge), edge]
         for n, (low, high) in enumerate(zip(ends, ends[1:])):
-            corners = {}
+            found = {}
             for x, z in section:
                 for y in (low, high):
                     y = min(max(y, -abs(x)), abs(x)) if cloister else max(y, abs(x))
                     if x or not (keyed and y):
-                        corners[x, y, z] = None
+                        found[x, y, z] = None
             # counted from that of x and y > 0 on
             diagonal = None
             if cloister and n in (0, len(ends) - 2):
                 diagonal = 3 if n == 0 else 0
             elif n == 0:
                 diagonal = int(2 * course < stones)
-            pieces.append((level, diagonal, keyed, tuple(corners)))
+            pieces.append((level, diagonal, keyed, tuple(found)))
     bricks, blocks, stretch = {}, [], (length or span) / span
     for turn in range(4):
         cos, sin = cosSin(turn, 0.0)
