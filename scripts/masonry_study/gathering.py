@@ -117,8 +117,6 @@ def written(path, text):
         f.write(text)
 
 
-#: Prefixes of lines of a log that do not explain a failure.
-_CHATTER = "Running script", "note: "
 _USAGE = re.compile(r"^usage: .*?: error: ", re.DOTALL | re.MULTILINE)  # of argparse
 _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
@@ -126,7 +124,7 @@ _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 def reason(log):
     """What a scene said at last before it failed, by the text of its log: sentences."""
     lines = [line.strip() for line in _USAGE.split(log, 1)[-1].splitlines()]
-    lines = [line for line in lines if line and not line.startswith(_CHATTER)]
+    lines = [line for line in lines if line and not line.startswith("note: ")]
     if "Traceback (most recent call last):" in log:
         lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
     return lines

@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 
 from masonry.run import batch
@@ -20,6 +21,8 @@ from .variables import NEVER, Distribution, Field
 NOTHING = "interrupted: nothing was run"  # while a study is looked at
 VERSION = 1  # of study.json
 SPARE = 20e6  # bytes that a study leaves free on the disk
+#: Program that builds a scene as rows do.
+PROBE = "import sys; from masonry import host; host.load(); host.runScript(sys.argv[1], [])"
 PROBING = 600  # [s] after which a scene that should only be built is given up
 
 
@@ -118,8 +121,6 @@ def _checkSpace(folder, needed):
 def _look(study, script, table):
     """Problems of the study that its scene tells when it is built, and the bytes that a row
     writes."""
-    if not shutil.which("yade"):
-        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")
     with tempfile.TemporaryDirectory() as place:
         place = Folder(place)
         _putFiles(place, study, table)
@@ -148,7 +149,7 @@ def _probed(script, place, line=2):
     env = {**os.environ, **row, "OMP_NUM_THREADS": "1"}
     where = dict(cwd=os.path.dirname(script), env=env, stdin=subprocess.DEVNULL)
     said = dict(capture_output=True, text=True, errors="replace")
-    command = ["yade", "-n", "--threads=1", "-x", script]
+    command = [sys.executable, "-P", "-c", PROBE, script]
     try:
         done = subprocess.run(command, **where, **said, timeout=PROBING)
     except subprocess.TimeoutExpired:
