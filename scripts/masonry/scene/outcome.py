@@ -110,7 +110,7 @@ class ResultSummary:
             },
             assumed=scene.assumed,
             time_step_s=O.dt,
-            time_step_limit_s=model.scheme.limit,
+            time_step_limit_s=model.scheme.presentLimit,
             units=len(model.bricks),
             nodes=self._nodes,
             joint_count=len(model.interactions),
