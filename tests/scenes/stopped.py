@@ -10,6 +10,7 @@ import io
 from kept import records
 from masonry import terminal
 from masonry.run import checkpoints
+from masonry.run import run as running
 from masonry.run.run import Run
 from masonry.run.drawing_program import DrawingProgram
 from masonry.stages import growing
@@ -218,18 +219,24 @@ def carryOut(script, *words, stop=None, most=math.inf):
     terminal.stopListening(forget)
     taken = [0]
 
-    def counted(run, steps, one):
-        step = one or (lambda number: O.step())
+    class Stepping:  # YADE as a run sees it
+        __getattr__ = lambda self, name: getattr(O, name)
 
-        def act(number):
-            step(number)
+    def counted(run, steps):
+        def act():
+            O.step()
             taken[0] += 1
             if stop:
                 stop(run, taken[0])
             if taken[0] >= most:
                 raise Stopped()
 
-        take(run, steps, act)
+        running.O = Stepping()
+        running.O.step = act
+        try:
+            take(run, steps)
+        finally:
+            running.O = O
 
     draw, DrawingProgram.draw = DrawingProgram.draw, lambda outcome, folder: None
     trial, growing.TRIAL = growing.TRIAL, 0.05  # [s], so that searches are short

@@ -103,10 +103,10 @@ def test_a_drawing_program_that_is_missing(tmp_path, monkeypatch, capsys):
 def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 
-    def full(run, count, one):
+    def full(run, count):
         if run.state.steps >= steps:
             raise MemoryError
-        take(run, count, one)
+        take(run, count)
 
     monkeypatch.setattr(Run, "_take", full)
     assert started(tmp_path) == 1

@@ -65,11 +65,12 @@ def test_what_fell_lies_on_the_ground_at_rest(fallen):
 
 def test_the_base_section_has_what_contacts_carry(fallen):
     """All that stands on the base passes through it, whether by joints or by contacts, and later to
-    the ground. The force of a joint that turns is along the mean of both faces, hence 1e-4 kN."""
+    the ground. The force of a joint that turns is along the mean of both faces. A joint is handed
+    over from 1° on, which is looked at every tenth step: after up to 2°, hence 1 - cos 1°."""
     _, rows = fallen
     for force, axis in (("N", "z"), ("V_y", "y")):
         carried = rows[f"base_force_{axis}_kN"] + rows[f"ground_force_{axis}_kN"]
-        assert rows[f"base_{force}_kN"] == approx(carried, abs=1e-4)
+        assert rows[f"base_{force}_kN"] == approx(carried, rel=1.5e-4, abs=1e-4)
     assert rows["handed_joints"][-1] > 0
 
 

@@ -124,6 +124,16 @@ scene.lean(0.5, (0, 1, 0))
 scene.result("reach", [a["value"] for a in scene.answers if a["name"] == "rubble_reach"][0], "m")
 scene.finish()
 """,
+    "shaken": """
+wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
+stones = materials.dry(0.6, 2e8, density=2200)
+scene = Scene("s", wall, stones, plane=False, collapse="follow")
+base = scene.platen("bottom")
+scene.settle()
+scene.move(base, z=-0.5)
+scene.shake([0, 12.0, 12.0, 12.0, 0, -12.0, -12.0, 0], 0.05, direction=(0, 1, 0), after=0.3)
+scene.finish()
+""",
 }
 
 
@@ -153,6 +163,7 @@ def resumed(script, whole):
         ("line", (0.3, 0.8, 0.9, 0.95)),
         ("machine", (0.02, 0.3, 0.6, 0.8, 0.95)),
         ("fall", (0.5, 0.95)),
+        ("shaken", (0.1, 0.4, 0.55, 0.7)),
         ("patterns", (0.3, 0.5, 0.9)),
     ],
 )

@@ -12,13 +12,27 @@ void MasonryContacts::step(SceneStore& store) {
     lookAtFalls(store);
 }
 
-void MasonryContacts::lookAtFalls(SceneStore& store) {
-    if (!takesJoints || scene->iter % lookEvery != 0) return;
+namespace {
+
+// Bodies that no joints hold.
+std::vector<int> looseIn(const SceneStore& store) {
     const auto held = heldByJoints(store);
     std::vector<int> loose;
     for (int body = 0; body < store.bodies.size(); ++body)
         if (store.bodies.has(body) && !held[body]) loose.push_back(body);
+    return loose;
+}
+
+} // namespace
+
+void MasonryContacts::lookAtFalls(SceneStore& store) {
+    if (!takesJoints || scene->iter % lookEvery != 0) return;
+    const auto loose = looseIn(store);
     falls_.look(store, loose, sizes(), store.gravity());
+    undamp(store, loose);
+}
+
+void MasonryContacts::undamp(SceneStore& store, const std::vector<int>& loose) {
     if (dampsLoose) return;
     for (int body : loose)
         if (auto& state = store.bodies.state(body); state.isDamped) {
@@ -28,8 +42,9 @@ void MasonryContacts::lookAtFalls(SceneStore& store) {
 }
 
 void MasonryContacts::follow(double share) {
-    const StillScene store;
+    StillScene store;
     stepShare = share;
+    undamp(*store, looseIn(*store));
     if (share > 0) beginFollowing(*store);
 }
 

@@ -106,6 +106,7 @@ private:
     py::dict fallen();
     py::list pairs();
     void lookAtFalls(SceneStore&);
+    void undamp(SceneStore&, const std::vector<int>& loose);
     void visitMemory(StateNumbers& n) {
         visitState(n);
         n(falls_);

@@ -95,14 +95,19 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
         account.excess = excess;
         return;
     }
-    // What the dashpot will do is known when all other forces are. For those of this pair it is what it would do to the
-    // present velocities.
+    // What the dashpot will do is known when all other forces are. Friction has what it would do to the present
+    // velocities, and where the contact area changes, as in an impact, the elastic force counts, too.
     effect.dampingCoefficient = dampingCoefficient(law, blocks, overlap);
-    const auto dashpot = damp(law, blocks, overlap, effect.dampingCoefficient, dt);
     memory.dashpot = Wrench();
+    const auto dashpot = damp(law, blocks, overlap, effect.dampingCoefficient, dt);
+    auto one = blocks.one, other = blocks.other;
+    push(one, -potential.force, potential.torques[0], 0.5 * dt);
+    push(other, potential.force, potential.torques[1], 0.5 * dt);
+    const auto struck = damp(law, {blocks.oneBlock, blocks.otherBlock, one, other, blocks.pose, blocks.gap}, overlap,
+                             effect.dampingCoefficient, dt);
     const double tangential = law.tangentialRatio * law.normalStiffness * overlap.area;
     const ContactChange change{!memory.touched(), 1 - memory.friction.stiffness / tangential};
-    effect.wrench = keepEnergy(blocks, law.normalStiffness, dt, change, potential, dashpot, finder, account);
+    effect.wrench = keepEnergy(blocks, law.normalStiffness, dt, change, potential, struck, finder, account);
     const double normalForce =
         std::max(0.0, (effect.wrench.force + dashpot.force).dot(blocks.one.turn * overlap.normal));
     const auto step = advanceFriction(memory.friction, overlap, blocks.pose, normalForce, tangential, law.friction);

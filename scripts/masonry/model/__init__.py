@@ -6,7 +6,8 @@
 - :mod:`masonry.model.structure`: all of a scene; its parts :mod:`masonry.model.loading`, with
   :mod:`masonry.model.load_names`; :mod:`masonry.model.connectors`: ties and springs;
   :mod:`masonry.model.restraints`: supports; :mod:`masonry.model.scheme`: damping, masses and time
-  step; :mod:`masonry.model.motion`: falling blocks
+  step; :mod:`masonry.model.motion`: falling blocks;
+  :mod:`masonry.model.overturning`: how near what stands is to overturning
 - :mod:`masonry.model.arrays`: the scene as arrays, for limit analysis
 - :mod:`masonry.model.period`: the first period of a structure
 - :mod:`masonry.model.window`: YADE's own 3-D view

@@ -154,6 +154,12 @@ class Scheme:
         if limit < self.limit:
             self.chooseTimeStep(limit)
 
+    @property
+    def presentLimit(self):
+        """The stable limit of the time step, at least, where it follows the state [s]."""
+        following = self.contacts.following if self.contacts else 0.0
+        return O.dt / following if following else self.limit
+
     def setGravity(self, gravity):
         """[m/s²]; deformable units follow."""
         self.integrator.gravity = gravity

@@ -14,6 +14,7 @@ from .connectors import Connectors
 from .engines import engine, engines
 from .loading import Loading, reactionOf
 from .motion import Motion
+from .overturning import Overturning
 from .scheme import Scheme
 from .restraints import Supports
 
@@ -76,6 +77,7 @@ class Structure:
         self.supports = Supports(self)
         self.loading.begin()
         self.motion = Motion(self)
+        self.overturning = Overturning(self) if self.contacts else None
 
     def _addBodies(self, loadingBlock):
         description = self.description

@@ -165,7 +165,8 @@ _ROWS = (
         "damping constant, the paper's eq. (3) [-]"
     ),
     Option("dt_fraction", number("", 1e-3, 1), 0.8, "F", chosen=True).means(
-        "time step over its stable limit [-]; above 0.94 combined damping may brake the push"
+        "time step over its stable limit [-], if not given 0.95 in shake and run without damping;"
+        " above 0.94 combined damping may brake the push"
     ),
     Option("density_scaling", number("", 1e-6, 1e6), 1.0, "F").means(
         "masses over their true values, weights kept [-]: a run as with the rate times sqrt(F), in"

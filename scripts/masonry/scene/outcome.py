@@ -110,7 +110,7 @@ class ResultSummary:
             },
             assumed=scene.assumed,
             time_step_s=O.dt,
-            time_step_limit_s=model.scheme.limit,
+            time_step_limit_s=model.scheme.presentLimit,
             added_inertia=model.scheme.addedInertia,
             units=len(model.bricks),
             nodes=self._nodes,

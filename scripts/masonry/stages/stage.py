@@ -14,6 +14,7 @@ from .. import notebook
 from ..arguments import number, validated
 from ..errors import Collapsed, NotAccurate, Refused
 from ..terminal import say
+from ..model.overturning import NEAR
 from ..run import batch
 from ..run.accuracy import STAGES
 from ..run.checkpoints import stateOf
@@ -239,6 +240,7 @@ class _Command:
         scene.ended = ended = self.act(scene, *args, **settings)
         if follows:
             scene.model.checkFallen()
+            self._noteEdge()
         self._noteEnd(ended)
         if not traits.extendable:
             running.checkpoints.setRollbackPoint()
@@ -303,6 +305,17 @@ class _Command:
         number = self.before + 1
         keep(scene, str(number), self.name, number, self.traits.answers(scene, rows))
 
+    def _noteEdge(self):
+        """Say if a structure that stands has been near the edge of a fall."""
+        share = self.scene.model.overturning.share()
+        share = max(share, getattr(self.running.memory, "overturned", 0.0))
+        if share >= NEAR:
+            say(
+                f"note: {self.name}: what stands had gone {100 * share:.0f} % of the way to"
+                " overturning, so the end is near the edge of a fall: another time step"
+                " (--dt-fraction), or a load that is a little larger, may turn it"
+            )
+
     def _noteOpened(self):
         """Say if dry joints have opened whose few points may hold more than their beds."""
         state, less = self.running.state, self.scene.model.scheme.joints.overestimate
@@ -325,6 +338,7 @@ class Timed:
     tick: float = 0.0  # the time step when the stage began [s]; 0 before that
     began: float = 0.0  # when that was [s]
     step: float = 0.0  # the time step now, which may follow the state [s]
+    overturned: float = 0.0  # largest Overturning.share() of the rows [-]
 
 
 def timed(scene, at, duration, before=None, after=None):
@@ -353,6 +367,8 @@ def timed(scene, at, duration, before=None, after=None):
         if at.done < goal:
             continue
         running.record()
+        if overturning := scene.model.overturning:
+            at.overturned = max(at.overturned, overturning.share())
         text = lambda: f"{at.done * at.tick:.3f} of {duration:.3f} s"
         running.show(at.done / length, text)
         if at.done >= at.nextFrame:
