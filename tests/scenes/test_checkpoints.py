@@ -144,7 +144,7 @@ def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whol
             run.checkpoints.write()
         assert kept.read_bytes() == before
 
-    at(60, fill)
+    at(30, fill)
     assert run(tmp_path, *PUSH) == 0
     said = f"no checkpoint could be written to {kept}: [Errno 28] No space left on"
     assert said in capsys.readouterr().err
@@ -176,7 +176,7 @@ def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
 
         return closed
 
-    at(32 if lost == "joints_0001.vtp" else 60, fill)
+    at(2 if lost == "joints_0001.vtp" else 30, fill)
     assert run(out, *PUSH) == 1
     said = capsys.readouterr()
     monkeypatch.undo()
@@ -190,7 +190,7 @@ def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
 def test_a_lost_frame_is_said_and_in_no_list(tmp_path, at, capsys, monkeypatch):
     out = tmp_path / "full"
     monkeypatch.setattr(frame_writer, "SLOW_FRAME", -1)  # all are written beside the run
-    at(32, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
+    at(2, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
     assert run(out, *PUSH) == 1
     said = capsys.readouterr().err
     assert re.search(r"the frame at [\d.]+ s is lost: .*No space left on dev", said)
@@ -218,7 +218,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
         time.sleep(0.15)
         at(1, look)
 
-    at(30, slow)
+    at(2, slow)
     assert run(tmp_path, *PUSH, "--no-vtk", "--until", "0.1") == 0
     assert len(seen) > 3
     assert all(written == read for read, written in seen)
@@ -241,7 +241,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
 
     seen = []
     monkeypatch.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
-    at(60, act)
+    at(30, act)
     with raises(OSError) if end == "error" else contextlib.nullcontext():
         run(tmp_path, *PUSH, "--no-vtk")
     rows = len(readCurve(tmp_path)["time_s"])
@@ -257,7 +257,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
 @pytest.fixture
 def broken(tmp_path, at):
     out = tmp_path / "broken"
-    at(50, interrupt)
+    at(20, interrupt)
     assert run(out, *PUSH, "--set", "bed.cohesion=2e5") == 130
     return out
 

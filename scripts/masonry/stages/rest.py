@@ -209,8 +209,11 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
             f" step, {O.dt:.3g} s"
         )
-    if at.solved and not at.done:  # a check sees it at rest
-        at.done, at.quiet = (growing // EVERY + 1) * 2 * EVERY, CONSECUTIVE_CHECKS - 1
+    if at.solved:  # the time of growth is over, and a check sees it at rest
+        begun = (growing // EVERY + 1) * 2 * EVERY
+        most += begun
+        if not at.done:
+            at.done, at.quiet = begun, CONSECUTIVE_CHECKS - 1
     while (dying or at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
         load = min(1.0, (at.done + every) / growing)
         grow(load)
