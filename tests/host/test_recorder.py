@@ -25,14 +25,14 @@ def test_joints_without_a_file_are_those_of_the_file(frame):
     ofFile, now = readFrame(folder, "joints"), asFrame(recorder.joints())
     assert ofFile.keys() == now.keys()
     for name in ofFile.keys() - {"cells"}:
-        assert np.array_equal(ofFile[name], now[name]), name
+        assert np.array_equal(ofFile[name], np.float32(now[name])), name  # files are rounded
     assert all(map(np.array_equal, ofFile["cells"], now["cells"]))
     assert len(ofFile["cells"]) == len(now["cells"]) > 10
 
 
 def test_every_column_of_the_joints_is_that_of_python(frame):
-    joints, folder, recorder = frame
-    cells = readFrame(folder, "joints")
+    _, _, recorder = frame
+    cells = asFrame(recorder.joints())
     joints = [O.interactions[i.id1, i.id2] for i in O.interactions]
     rows = [(i, n) for i in joints for n in range(len(i.geom.areas))]
     assert len(cells["area"]) == len(rows)
@@ -79,8 +79,8 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
 
 
 def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
-    joints, folder, _ = frame
-    frame = readFrame(folder, "joints")
+    _, _, recorder = frame
+    frame = asFrame(recorder.joints())
     places, corners = frame["points"], frame["cells"]
     row = 0
     for i in O.interactions:
@@ -101,8 +101,8 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
 def test_the_points_of_a_joint_move_with_each_of_its_two_blocks(frame):
     """With a deformable unit a point of a joint moves as its nodes do; the jump is what opens and
     slides there."""
-    _, folder, _ = frame
-    points = readFrame(folder, "joints")
+    _, _, recorder = frame
+    points = asFrame(recorder.joints())
     places, corners = points["points"], points["cells"]
     zones = next((e for e in O.engines if isinstance(e, MasonryZones)), None)
     deformable = set(zones.bodies) if zones else set()
@@ -156,7 +156,8 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
         ("displacement", moved, 1e-9 * size),
         ("velocity", speed, 1e-9),
     ):
-        assert np.linalg.norm(found[name] - expected, axis=1).max() < apart
+        rounded = np.float32(expected)  # as a file has them
+        assert np.linalg.norm(found[name] - rounded, axis=1).max() < apart
     bodies = [*map(int, found["body"])]
     ofZones = {body for body, cell in zip(bodies, found["cells"]) if len(cell) == 4}
     assert ofZones == set(deformable) and {*bodies} == {b.id for b in O.bodies}

@@ -211,5 +211,7 @@ def _array(array, taken, size):
     data, ends = taken(start, sum(sizes))[0], np.cumsum(sizes)
     parts = [zlib.decompress(data[b - n : b]) for n, b in zip(sizes, ends)]
     numbers = np.frombuffer(b"".join(parts), "<" + TYPES[array.get("type")])
+    if numbers.dtype == np.float32:
+        numbers = numbers.astype(float)  # sums are of doubles
     components = int(array.get("NumberOfComponents") or 1)
     return numbers.reshape(-1, components) if components > 1 else numbers
