@@ -315,7 +315,7 @@ def ofStudies():
                 *RIGID,
                 *CYCLIC,
             ),
-            12,
+            15,
             ("validation/dry_joint_walls/reversals",),
         ),
         Result(
