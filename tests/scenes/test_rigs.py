@@ -126,6 +126,14 @@ def test_a_machine_presses_beside_other_loads(tmp_path, blocks, beside):
     assert curve["balance_error"].max() < 1e-3
 
 
+def test_soft_guides_give_way_before_their_friction_slips(tmp_path):
+    scene, top = inMachine(tmp_path, (5, 10), friction=0.05, guides=1e6)
+    up = scene.curve()["top_z_mm"]
+    load = scene.model.loading.loads["top_press"]
+    assert load.slip == 0 and up[-1] - up[0] > 0.5
+    assert load.reaction == approx(1e3 * (up[-1] - up[0]), rel=0.01)
+
+
 @mark.parametrize("loads, dead", [(lambda top: {top: 1e4}, False), (lambda top: {}, True)])
 def test_a_load_of_a_machine_does_not_grow(tmp_path, loads, dead):
     scene, top = inMachine(tmp_path, (0.1, 0.2), friction=0.05)
