@@ -9,8 +9,8 @@ machine may have.
 Runs of rig.py that have no results yet are made; writes reversals.md, the tables, and
 reversals.png. What is looked at:
 
-- a *reversal*: a turning point of the displacement at 5 mm or more, from and to which the wall moves
-  by 2.5 mm and more; the force after it is that as the wall goes back, less that at the turning
+- a *reversal*: a turning point of the displacement at 5 mm or more, before and after which the wall
+  moves by 2.5 mm and more; the force after it is that as the wall goes back, less that at the turning
   point, both positive towards the side of the turning point
 - the *half height* of a loop, W / (4 A N): W the work of a cycle, A its half amplitude, N the
   vertical force at the base. It is half the distance of both branches in the mean, over N
@@ -206,7 +206,7 @@ def main(words=None):
             "Made by `reversals.py`, which says what the columns are.",
             "Tests, with the number of walls:",
             text,
-            "Test and runs; friction 0.05 of the load, stiffness 1.4 kN, soft guides 11 kN per mm of uplift:",
+            "Test and runs; friction 0.05, stiffness 1.4 kN/mm of uplift, soft guides 11 kN/mm:",
             studies.table(HEADS, calculatedRows(curves)),
         ]
         text = "\n\n".join(parts) + "\n"
