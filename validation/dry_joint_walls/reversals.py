@@ -10,8 +10,8 @@ Runs of rig.py that have no results yet are made; writes reversals.md, the table
 reversals.png. What is looked at:
 
 - a *reversal*: a turning point of the displacement at 5 mm or more, before and after which the wall
-  moves by 2.5 mm and more; the force after it is that as the wall goes back, less that at the turning
-  point, both positive towards the side of the turning point
+  moves by 2.5 mm and more; the force after it is that as the wall goes back, less that at the
+  turning point, both positive towards the side of the turning point
 - the *half height* of a loop, W / (4 A N): W the work of a cycle, A its half amplitude, N the
   vertical force at the base. It is half the distance of both branches in the mean, over N
 """
