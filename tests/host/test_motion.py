@@ -118,7 +118,7 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
         assert O.forces.f(1, True)[2] == approx(-weight, abs=1e-7)
 
 
-#: A machine that loads with 1 kN: friction [-], stiffness [N/m], where the loaded point moves [mm];
+#: A machine that loads with 1 kN: friction [-], stiffness [N/m], where its point moves [mm];
 #: what it adds there [N], and what its friction has dissipated [J], which slips after 0.02 mm.
 MACHINES = {
     "a dead load": (0.0, 0.0, [2, -1], 0, 0),

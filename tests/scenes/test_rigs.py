@@ -55,8 +55,8 @@ def inMachine(folder, path=PATH, **press):
 
 @mark.parametrize("friction, stiffness", [(0, 0), (0.05, 0), (0, 2e6), (0.05, 2e6)])
 def test_the_load_of_a_machine_follows_uplift_and_lags(tmp_path, friction, stiffness):
-    """N(u) = (N + k u)(1 ± f), and friction takes f of that over all that the platen travels, but for the
-    0.02 mm in which it grows and the 0.04 mm of a reversal."""
+    """N(u) = (N + k u)(1 ± f), and friction takes f of that over all that the platen travels, but
+    for the 0.02 mm in which it grows and the 0.04 mm of a reversal."""
     scene, top = inMachine(tmp_path, friction=friction, stiffness=stiffness)
     curve, weight = scene.curve(), 1e-3 * scene.model.supports.weightOf(top)
     force, up = curve["top_force_z_kN"], curve["top_z_mm"] - curve["top_z_mm"][0]
@@ -126,6 +126,14 @@ def test_a_machine_presses_beside_other_loads(tmp_path, blocks, beside):
     pressed = 1e-3 * STRESS * 0.44 * THICKNESS
     assert curve["top_force_z_kN"][-1] == approx(pressed, rel=0.08 if beside != "load" else 0.13)
     assert curve["balance_error"].max() < 1e-3
+
+
+def test_soft_guides_give_way_before_their_friction_slips(tmp_path):
+    scene, top = inMachine(tmp_path, (5, 10), friction=0.05, guides=5e5)
+    up = scene.curve()["top_z_mm"]
+    load = scene.model.loading.loads["top_press"]
+    assert load.slip == approx(0, abs=1e-12) and up[-1] - up[0] > 0.5
+    assert load.reaction == approx(500 * (up[-1] - up[0]), rel=0.01)
 
 
 @mark.parametrize("loads, dead", [(lambda top: {top: 1e4}, False), (lambda top: {}, True)])

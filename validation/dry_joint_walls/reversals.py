@@ -9,9 +9,9 @@ machine may have.
 Runs of rig.py that have no results yet are made; writes reversals.md, the tables, and
 reversals.png. What is looked at:
 
-- a *reversal*: a turning point of the displacement at 5 mm or more, from and to which the wall moves
-  by 2.5 mm and more; the force after it is that as the wall goes back, less that at the turning
-  point, both positive towards the side of the turning point
+- a *reversal*: a turning point of the displacement at 5 mm or more, before and after which the wall
+  moves by 2.5 mm and more; the force after it is that as the wall goes back, less that at the
+  turning point, both positive towards the side of the turning point
 - the *half height* of a loop, W / (4 A N): W the work of a cycle, A its half amplitude, N the
   vertical force at the base. It is half the distance of both branches in the mean, over N
 """
@@ -45,10 +45,15 @@ RUNS = {
     "paper's law": ("WS2175", "softening", {}),
     "paper's law, friction": ("WS2175", "softening", dict(friction=0.05)),
     "paper's law, friction and stiffness": ("WS2175", "softening", MACHINE),
+    "paper's law, friction, stiffness and soft guides": (
+        "WS2175",
+        "softening",
+        dict(**MACHINE, guides=11),
+    ),
     "cyclic law, `blind.json`": ("WS2175", "cyclic", {}),
     "cyclic law, friction and stiffness": ("WS2175", "cyclic", MACHINE),
-    "in mortar": (measured.DRIVEN, "cyclic", {}),
-    "in mortar, friction and stiffness": (measured.DRIVEN, "cyclic", MACHINE),
+    "in mortar, paper's law": (measured.DRIVEN, "softening", {}),
+    "in mortar, paper's law, friction and stiffness": (measured.DRIVEN, "softening", MACHINE),
 }
 HEADS = [
     "curve",
@@ -170,7 +175,7 @@ def draw(curves, path):
         axes.plot(back, mean(ofTest(wall)[0]), "k", lw=2.5, label="test")
         for name, (of, _, press) in RUNS.items():
             if of == wall:
-                line = "-" if len(press) == 2 else ":" if press else "--"
+                line = "-" if len(press) > 1 else ":" if press else "--"
                 axes.plot(back, mean(reversals(*curves[name])), line, label=name.replace("`", ""))
         axes.axhline(0, color="0.6", lw=0.8)
         axes.set_title(f"{wall[:3]}.{wall[3:]}")
@@ -201,7 +206,7 @@ def main(words=None):
             "Made by `reversals.py`, which says what the columns are.",
             "Tests, with the number of walls:",
             text,
-            "Test and runs; friction 0.05 of the load, stiffness 1.4 kN per mm of uplift:",
+            "Test and runs; friction 0.05, stiffness 1.4 kN/mm of uplift, soft guides 11 kN/mm:",
             studies.table(HEADS, calculatedRows(curves)),
         ]
         text = "\n\n".join(parts) + "\n"

@@ -6,9 +6,9 @@ yade -n -x validation/dry_joint_walls/rig.py --rig 37 --out
 results/validation/dry_joint_walls/rig_37
 
 37 kN/mm is the stiffness that makes the start of the plain model's curve that of the test
-(README.md, Loops); it was not measured. ``--rig 0`` is a base that does not give way, ``--friction``,
-``--uplift`` and ``--guides`` are those of ``scene.press``. Prints the stiffness of the first cycle, both peaks,
-and the work of the cycles beside those of the test.
+(README.md, Loops); it was not measured. ``--rig 0`` is a base that does not give way.
+``--friction``, ``--uplift`` and ``--guides`` are those of ``scene.press``. Prints the stiffness of
+the first cycle, both peaks, and the work of the cycles beside those of the test.
 """
 
 import os
