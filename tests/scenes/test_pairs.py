@@ -61,6 +61,15 @@ class Place:
         return (round(np.linalg.det(self.turn)) if turning else 1) * self.turn.T @ vector
 
 
+def watchFirst(scene, place, lined, x, z):
+    """Watch the first block; ``lined``: also hold the edge of one along x."""
+    scene.watch(0, name="first")
+    if not lined:
+        return
+    begin, end = (place.at((x, y, z)) for y in (0, DEPTH))
+    scene.hold(begin, "line", place.axes("x"), to=end, stiffness=1e7)
+
+
 class Drawn:
     """A structure and what is said of it.
 
@@ -76,8 +85,7 @@ class Drawn:
         self.plane, self.shape = pick.random() < 0.6, pick.choice([*SHAPES])
         self.springs = pick.choice([None, None, {"x": 5e7}, {"z": 2e8, "Y": 1e7}])
         self.top = pick.choice(["free", "held", "handle"])
-        self.tied, self.sprung = pick.random() < 0.4, pick.random() < 0.3
-        self.lined = seed % 4 == 0
+        self.tied, self.sprung, self.lined = pick.random() < 0.4, pick.random() < 0.3, seed % 4 == 0
         turns = [MIRROR, np.eye(3, dtype=int)] + [TURN, TURN @ MIRROR] * (not self.plane)
         self.place = Place(pick.choice(turns), pick.choice([NOTHING, (2.0, -3.0, 1.5)]))
         self.options = pick.choice(OPTIONS if elastic else STIFF)
@@ -274,11 +282,7 @@ class Drawn:
         if self.sprung:
             stiff = np.abs(place.along((2e6, 0, 1e6)))
             scene.spring(0, stiffness=tuple(stiff.tolist()), name="soft")
-        if self.lined:  # the lower edge of the side of the highest block
-            x, z = SHAPES[self.shape][-1][:2]
-            begin, end = (place.at((x, y, z)) for y in (0, DEPTH))
-            scene.hold(begin, "line", place.axes("x"), to=end, stiffness=1e7)
-        scene.watch(0, name="first")
+        watchFirst(scene, place, self.lined, *SHAPES[self.shape][-1][:2])
         return scene, top
 
     def carriedOut(self, folder, place):
@@ -330,8 +334,9 @@ def rest(scene):
 
 #: Columns of what led there.
 PATH = re.compile(
-    "time_s|displacement_mm|(base|top)_shear_kN|vertical_mm|rotation_mrad|load_factor|masonry.*|drift.*"
+    "time_s|displacement_mm|(base|top)_shear_kN|vertical_mm|rotation_mrad|load_factor|masonry.*"
     "|balance_error|(external|gravity|refining|kinetic|damping|impacts|dissipated.*)_J|largest_.*"
+    "|drift.*"
 ).fullmatch
 
 

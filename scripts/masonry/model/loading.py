@@ -118,8 +118,7 @@ class Loading:
         self.structure.connectors.grow(smooth(x))
 
     def deadLoads(self, lifts=True):
-        """Pairs of MasonryLoad and its force when it has grown [N]; ``lifts``: also those of
-        platens of another weight."""
+        """Pairs of MasonryLoad and its force when it has grown [N], or without those of LIFT."""
         for label, load in self.loads.items():
             if label.endswith(LIFT) and not lifts:
                 continue
