@@ -125,7 +125,7 @@ def test_a_program_ends_as_a_script_of_its_own_does(tmp_path, monkeypatch, act, 
     assert os.environ["KNOWN"] == "there"
 
 
-def test_what_a_program_refuses_is_told_to_its_parent(tmp_path):
+def test_a_parent_reads_what_its_program_refuses(tmp_path):
     def act():
         background.reportRefusal(Refused("--rate -1 must be above 0"))
         return 2
