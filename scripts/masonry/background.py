@@ -185,7 +185,7 @@ def _runProgram(act, log, env, cwd, refusal):
     _refusal = refusal
     for number, file in enumerate((os.open(os.devnull, os.O_RDONLY), log, log)):
         os.dup2(file, number)
-    how: Any = dict(buffering=1, errors="backslashreplace", closefd=False)
+    how = dict(buffering=1, errors="backslashreplace", closefd=False)
     sys.stdout, sys.stderr = (open(number, "w", **how) for number in (1, 2))
     atexit._clear()
     forgetNotes()

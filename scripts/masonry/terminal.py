@@ -57,4 +57,5 @@ def stopListening(listener: Callable[[str], None]) -> None:
 
 def forgetNotes() -> None:
     """Forget notes that wait for a run, and who listens: in a copy of the process."""
-    _listeners.clear(), _pending.clear()
+    _listeners.clear()
+    _pending.clear()

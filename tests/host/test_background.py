@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Work that a copy of the process does beside a run."""
 
+import atexit
+
 from usual import *
 from masonry import background
-from masonry.background import Failed, Task
-from masonry.errors import Unwritable
+from masonry.background import Failed, Program, Task
+from masonry.errors import Refused, Unwritable
 
 
 def children():
@@ -82,3 +84,53 @@ def test_without_a_process_the_work_is_done_at_once(monkeypatch):
     monkeypatch.setattr(background.os, "fork", refused)
     task = Task(lambda: iter([os.getpid(), 2]), parts=2)
     assert task.ready(1) and task.result(0) == os.getpid() and task.result(1) == 2
+
+
+def says(text, status):
+    """What a program does: it says something, now and at its end, and ends with a status."""
+
+    def act():
+        atexit.register(print, "over")
+        print(text, os.environ.get("KNOWN"), os.getcwd())
+        raise SystemExit(status)
+
+    return act
+
+
+def fails():
+    raise RuntimeError("it was told to fail")
+
+
+def isKilled():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@mark.parametrize(
+    "act, status, said",
+    [
+        (says("fine", None), 0, "fine here /tmp\nover\n"),
+        (says("odd", 7), 7, "odd here /tmp\nover\n"),
+        (says("wrong", "in a sentence"), 1, "in a sentence\n"),
+        (fails, 1, "RuntimeError: it was told to fail\n"),
+        (isKilled, -signal.SIGKILL, ""),
+    ],
+)
+def test_a_program_ends_as_a_script_of_its_own_does(tmp_path, monkeypatch, act, status, said):
+    monkeypatch.setenv("KNOWN", "there")
+    before = children()
+    with open(tmp_path / "log", "wb") as log:
+        program = Program(act, log, {"KNOWN": "here"}, "/tmp")
+    assert program.wait() == program.poll() == status and children() == before
+    assert said in (tmp_path / "log").read_text() and program.refusal() == ("", "")
+    assert os.environ["KNOWN"] == "there"
+
+
+def test_a_parent_reads_what_its_program_refuses(tmp_path):
+    def act():
+        background.reportRefusal(Refused("--rate -1 must be above 0"))
+        return 2
+
+    with open(tmp_path / "log", "wb") as log:
+        program = Program(act, log)
+    assert program.wait() == 2
+    assert program.refusal() == ("Refused", "--rate -1 must be above 0")
