@@ -26,7 +26,7 @@ void RigidMotion::push(int n, const Axis& axis, const Around& around, double gra
     const double *inert = axis.inert, *moves = axis.free, *pushed = axis.force;
     double *velocity = axis.velocity, *last = axis.last;
     const double* steady = steady_;
-    const double dt = around.push(), half = 0.5 * dt, rate = 1 / dt;
+    const double dt = around.dt, half = 0.5 * dt, rate = 1 / dt;
     const double share = dampingShare(around.combined), calms = around.combined ? 1 : 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
@@ -111,7 +111,7 @@ MASONRY_INLINED PlainQuaternion after(const PlainQuaternion& old, double time, c
 MASONRY_VECTORISED
 void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around) {
     const InSpace c = given;
-    const double dt = around.push(), half = 0.5 * dt, rate = 1 / dt;
+    const double dt = around.dt, half = 0.5 * dt, rate = 1 / dt;
     const double share = dampingShare(around.combined), calms = around.combined ? 1 : 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
@@ -149,17 +149,16 @@ void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around)
 // advanced to the present step; the angular velocity that belongs to it, in the body's axes, gives the orientation at
 // the middle of the step. With that orientation the momentum at the middle of the step turns the body by a whole step.
 MASONRY_VECTORISED
-void RigidMotion::turnInSpace(int n, const InSpace& given, const Around& around) {
+void RigidMotion::turnInSpace(int n, const InSpace& given, double dt) {
     const InSpace c = given;
-    const double dt = around.dt, pushed = around.push();
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const bool mine = inSpace[i] != 0;
         const PlainQuaternion old = quaternionAt(c.orientation, i);
         const PlainVector inertia = vectorAt(c.inertia, i);
         const PlainVector on = vectorAt(torque, i);
-        const PlainVector before = vectorAt(momentum, i), grown = before + pushed * on;
-        const PlainQuaternion middle = after(old, 0.5 * dt, old, old.turnBack(before + 0.5 * pushed * on) / inertia);
+        const PlainVector before = vectorAt(momentum, i), grown = before + dt * on;
+        const PlainQuaternion middle = after(old, 0.5 * dt, old, old.turnBack(before + 0.5 * dt * on) / inertia);
         const PlainVector spin = old.turnBack(grown) / inertia;
         const PlainQuaternion now = after(old, dt, middle, spin);
         const PlainVector turning = now.turn(spin);
@@ -199,7 +198,7 @@ void RigidMotion::advance(RigidColumns& bodies, double* const* last, int first, 
     if (axes >> 3) turn(n, around.dt, rotation.spin, rotation.orientation);
     if (std::all_of(inSpace, inSpace + n, [](double turns) { return turns == 0; })) return;
     pushInSpace(n, rotation, around);
-    turnInSpace(n, rotation, around);
+    turnInSpace(n, rotation, around.dt);
 }
 
 } // namespace masonry

@@ -24,9 +24,6 @@ struct RigidMotion {
         double dt;         // time step [s]
         double gravity[3]; // [m/s²]
         bool combined;     // whether damping is combined or local
-        double change = 0; // time step less the one before [s]
-        // Time between the middles of the step before and of this one: forces change velocities for so long [s].
-        double push() const { return dt - 0.5 * change; }
     };
     double alpha[most];       // input: damping constant of each body [-]
     double viscous[most];     // input: mass-proportional damping of each body [1/s]
@@ -60,7 +57,7 @@ private:
         double *orientation[4], *spin[3], *last[3];
     };
     void pushInSpace(int n, const InSpace&, const Around&);
-    void turnInSpace(int n, const InSpace&, const Around&);
+    void turnInSpace(int n, const InSpace&, double dt);
 };
 
 } // namespace masonry

@@ -68,7 +68,6 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     for (auto* load : loads)
         load->workAfter(scene.dt, motionOf);
     if (!shaking.samples.empty()) ++shaking.steps;
-    stepChange = 0;
 }
 
 // The power of forces and weight on a body along its blocked axes with its present velocity, less that with the
@@ -123,7 +122,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         }
     findWeights(bodies, first, count, all);
     if (axes != 0) {
-        const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_, stepChange};
+        const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_};
         double unused[RigidMotion::most]; // local damping does not use earlier forces
         if (!combines_) std::fill_n(unused, count, 0.0);
         double* last[6];

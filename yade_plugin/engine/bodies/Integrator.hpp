@@ -19,7 +19,6 @@ public:
     double massDamping = 0;                   // mass-proportional viscous damping [1/s]
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
     GroundMotion shaking;                     // sets the gravity of every step while it has a record
-    double stepChange = 0;                    // of the time step that follows the state, in the present step [s]
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;

@@ -2,7 +2,6 @@
 #include "CriticalTimeStep.hpp"
 #include "engine/bodies/BodyCheck.hpp"
 #include "engine/bodies/BodyStep.hpp"
-#include "engine/bodies/Integrator.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "engine/contacts/Contacts.hpp"
 #include "engine/store/SceneStore.hpp"
@@ -435,9 +434,7 @@ void followTimeStep(SceneStore& store) {
         const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
         const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
         double& dt = store.scene().dt;
-        if (!(dt > wanted || growth * dt < wanted)) continue;
-        if (store.integrator) store.integrator->stepChange = wanted - dt;
-        dt = wanted;
+        if (dt > wanted || growth * dt < wanted) dt = wanted;
     }
 }
 
