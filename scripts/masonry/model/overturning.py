@@ -11,10 +11,10 @@ CLOSE = 1e-6  # difference of levels that are the same, over the height [-]
 class Overturning:
     """What stands above the beds of a structure, against the edges of these beds.
 
-    A bed is a level at which blocks of a part begin, or the lower side of a stone that carries none.
-    What of the part is above, or this stone, overturns in a direction when its centroid has passed
-    the edge of the blocks that begin there, or of those that end there. What has fallen is left
-    out, and so is a bed beyond whose edge the centroid was as built.
+    A bed is a level at which blocks of a part begin, or the lower side of a stone that carries
+    none. What of the part is above, or this stone, overturns in a direction when its centroid has
+    passed the edge of the blocks that begin there, or of those that end there. What has fallen is
+    left out, and so is a bed beyond whose edge the centroid was as built.
     """
 
     def __init__(self, structure):
@@ -50,34 +50,36 @@ class Overturning:
             beside &= (front < back[n] - near) & (back > front[n] + near)
             if not (beside & (abs(low - high[n]) < near)).any():
                 add(low[n], np.arange(len(blocks)) == n, beside)
-        self._built = [self._distances(*bed) for bed in self._beds]
+        self._built = [self._distances(built, *bed) for bed in self._beds]
 
-    def _distances(self, above, edges, fallen=()):
+    def _distances(self, places, above, edges, fallen=()):
         """How far the edges of a bed are from the centroid of what is above, along each direction
-        [m]; None if nothing is."""
+        [m], by the corners of all blocks; None if nothing is."""
         above = [n for n in above if n not in fallen]
         if not above:
             return None
         masses = np.array([self._states[n].mass for n in above])
-        places = np.array([self._states[n].pos for n in above])
-        middle = masses @ places / masses.sum()
+        middle = masses @ np.array([self._states[n].pos for n in above]) / masses.sum()
         found = []
         for corners in edges:
-            points = np.vstack([self._corners(n, which) for n, which in corners])
+            points = np.vstack([places[n][which] for n, which in corners])
             found.append(((points - middle)[:, :2] @ self._towards).max(axis=0))
         return np.min(found, axis=0)
 
-    def _corners(self, n, which):
-        state = self._states[n]
-        turn = np.array((state.ori * state.refOri.conjugate()).toRotationMatrix())
-        return self._arms[n][which] @ turn.T + np.array(state.pos)
+    def _places(self):
+        """Where the corners of all blocks are [m]."""
+        for arms, state in zip(self._arms, self._states):
+            turn = np.array((state.ori * state.refOri.conjugate()).toRotationMatrix())
+            yield arms @ turn.T + np.array(state.pos)
 
     def share(self):
         """The largest share of the way to overturning that anything has gone since the scene was
-        built [-]: 0 as built, 1 on the verge."""
-        fallen, most = self._structure.fallen(), 0.0
+        built [-]: 0 as built, or while no joint has become a contact, 1 on the verge."""
+        if not self._structure.contacts.handed:
+            return 0.0
+        fallen, places, most = self._structure.fallen(), [*self._places()], 0.0
         for bed, built in zip(self._beds, self._built):
-            now = self._distances(*bed, fallen)
+            now = self._distances(places, *bed, fallen)
             if now is not None and (built > 0).all():
                 most = max(most, float((1 - now / built).max()))
         return most
