@@ -134,8 +134,8 @@ def _elasticPeriod(structure, direction, share):
         acceleration = share * GRAVITY / structure.args.density_scaling
         moved = 2 * acceleration * solution.participation() / square
         rest, forces, lost = solution.force(), [], structure.energies()[0]
-        for way in (moved, -2 * moved):
-            solution.displace(way)
+        for amount in (moved, -2 * moved):
+            solution.displace(amount)
             O.step()
             forces.append(solution.force() - rest)
         lost = structure.energies()[0] - lost

@@ -235,8 +235,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False,
         running.show(
             min(1, at.done / most),
             lambda: (
-                f"{'elastic solution, ' * at.solved}{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
-                " the elastic"
+                f"{'elastic solution, ' * at.solved}{100 * missing:.2f} % of the loads not carried,"
+                f" kinetic energy {moving:.1e} of the elastic"
             ),
             at.quiet == CONSECUTIVE_CHECKS or ends,
         )

@@ -71,11 +71,14 @@ private:
 
 } // namespace
 
-ElasticSolution::ElasticSolution() : scene_(*StillScene()), dynamics_(scene_, Dynamics::AsIfAllWereDamped) {
+ElasticSolution::ElasticSolution()
+    : scene_(*StillScene()),
+      dynamics_(scene_, Dynamics::AsIfAllWereDamped),
+      scale_(dynamics_.scale().data(), Eigen::Index(dynamics_.scale().size())),
+      places_(dynamics_.scale().size(), -1) {
     const StillScene still;
     Dissection blocks;
-    const auto& scale = dynamics_.scale();
-    std::vector<int> blockOf(scale.size()), first;
+    std::vector<int> blockOf(places_.size()), first;
     const auto addBlock = [&](int body, int from, int beyond) {
         std::fill(blockOf.begin() + from, blockOf.begin() + beyond, int(first.size()));
         blocks.places.push_back(scene_.bodies.placeOf(body));
@@ -95,85 +98,91 @@ ElasticSolution::ElasticSolution() : scene_(*StillScene()), dynamics_(scene_, Dy
             const int other = blockOf[e.col()];
             if (other != blockOf[row] && (known.empty() || known.back() != other)) known.push_back(other);
         }
-    places_.assign(scale.size(), -1);
     for (int block : blocks.order())
-        for (std::size_t i = std::size_t(first[block]); i < scale.size() && blockOf[i] == block; ++i)
-            if (scale[i] != 0) places_[i] = count_++;
+        for (std::size_t i = std::size_t(first[block]); i < places_.size() && blockOf[i] == block; ++i)
+            if (scale_[i] != 0) places_[i] = count_++;
     std::vector<Eigen::Triplet<double>> entries;
     for (int row = 0; row < matrix.rows(); ++row)
         for (Entry e(matrix, row); e; ++e)
             if (places_[row] >= places_[e.col()]) entries.emplace_back(places_[row], places_[e.col()], e.value());
-    Eigen::SparseMatrix<double> ordered(count_, count_);
-    ordered.setFromTriplets(entries.begin(), entries.end());
-    factors_.compute(ordered);
+    Eigen::SparseMatrix<double> lower(count_, count_);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    factors_.compute(lower);
     if (factors_.info() != Eigen::Success) throw std::invalid_argument("something can move without resistance");
 }
 
-// The forces on what can move, in the order of the factors, times its scale.
+// Between all degrees of freedom and those that can move, in the order of the factors.
+ElasticSolution::Vector ElasticSolution::ordered(const Vector& all) const {
+    Vector found(count_);
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+        if (places_[i] >= 0) found[places_[i]] = all[i];
+    return found;
+}
+
+ElasticSolution::Vector ElasticSolution::spread(const Vector& ordered) const {
+    Vector found = Vector::Zero(Eigen::Index(places_.size()));
+    for (Eigen::Index i = 0; i < found.size(); ++i)
+        if (places_[i] >= 0) found[i] = ordered[places_[i]];
+    return found;
+}
+
+// The forces on what can move, times its scale.
 ElasticSolution::Vector ElasticSolution::imbalance() const {
-    Vector all = Vector::Zero(count_);
-    const auto& scale = dynamics_.scale();
-    const auto put = [&](int degree, double force) {
-        if (places_[degree] >= 0) all[places_[degree]] = scale[degree] * force;
-    };
-    const Vector3r gravity = scene_.gravity();
-    const auto onNodes = scene_.zones ? scene_.zones->lastForces() : std::vector<Vector3r>();
-    for (std::size_t i = 0; i < 3 * onNodes.size(); ++i)
-        put(int(i), onNodes[i / 3][i % 3]); // weights are among them
+    Vector all = Vector::Zero(scale_.size());
+    if (scene_.zones) {
+        const auto onNodes = scene_.zones->lastForces(); // with weights
+        for (std::size_t n = 0; n < onNodes.size(); ++n)
+            all.segment<3>(3 * n) = onNodes[n];
+    }
     const auto on = scene_.scene().forces().sums(scene_.bodies.size());
     for (const auto& [body, first] : dynamics_.firstOfBody()) {
         const State& s = scene_.bodies.state(body);
-        const Vector3r force = on.forces[body] + s.mass * gravity, torque = ownAxes(s).transpose() * on.torques[body];
-        for (int d = 0; d < 6; ++d)
-            put(first + d, d < 3 ? force[d] : torque[d - 3]);
+        all.segment<6>(first) << on.forces[body] + s.mass * scene_.gravity(), ownAxes(s).transpose() * on.torques[body];
     }
-    return all;
+    return ordered(all.cwiseProduct(scale_));
 }
 
-// How the point that a drive holds moves with every degree of freedom, as imbalance().
+// How the point that a drive holds moves with what can move, likewise.
 ElasticSolution::Vector ElasticSolution::alongDrive(const Load& load) const {
-    Vector all = Vector::Zero(count_);
+    Vector all = Vector::Zero(scale_.size());
     const Vector3r along = load.direction.normalized();
     for (std::size_t n = 0; n <= load.others.size(); ++n) {
         const int body = n ? load.others[n - 1] : load.body;
+        const auto first = dynamics_.firstOfBody().find(body);
+        if (first == dynamics_.firstOfBody().end()) continue;
         const State& s = scene_.bodies.state(body);
         const Vector3r arm = s.ori * (s.refOri.conjugate() * ((n ? load.otherPoints[n - 1] : load.point) - s.refPos));
-        const Vector3r turning = ownAxes(s).transpose() * arm.cross(along);
-        const double share = load.shares.empty() ? 1 : load.shares[n];
-        const auto first = dynamics_.firstOfBody().find(body);
-        for (int d = 0; first != dynamics_.firstOfBody().end() && d < 6; ++d) {
-            const int degree = first->second + d;
-            if (places_[degree] >= 0)
-                all[places_[degree]] = dynamics_.scale()[degree] * share * (d < 3 ? along[d] : turning[d - 3]);
-        }
+        all.segment<6>(first->second) << along, ownAxes(s).transpose() * arm.cross(along);
+        all.segment<6>(first->second) *= load.shares.empty() ? 1 : load.shares[n];
     }
-    return all;
+    return ordered(all.cwiseProduct(scale_));
 }
 
-void ElasticSolution::holdDrives(Vector& moved) const {
+// The motion under forces, times and divided by the scale, while drives hold.
+ElasticSolution::Vector ElasticSolution::motionUnder(const Vector& forces) const {
+    Vector moved = factors_.solve(forces);
     std::vector<Vector> held;
     for (const auto* load : scene_.loads)
         if (load->driven) held.push_back(alongDrive(*load));
-    if (held.empty()) return;
+    if (held.empty()) return moved;
     Eigen::MatrixXd drives(count_, Eigen::Index(held.size()));
     for (std::size_t i = 0; i < held.size(); ++i)
         drives.col(Eigen::Index(i)) = held[i];
     const Eigen::MatrixXd yields = factors_.solve(drives);
-    moved -= yields * (drives.transpose() * yields).eval().ldlt().solve(drives.transpose() * moved);
+    return moved - yields * (drives.transpose() * yields).eval().ldlt().solve(drives.transpose() * moved);
 }
 
 double ElasticSolution::move() {
     const StillScene still;
     const Vector forces = imbalance();
-    Vector moved = factors_.solve(forces);
-    holdDrives(moved);
+    const Vector moved = motionUnder(forces), all = spread(moved).cwiseProduct(scale_);
     const double work = forces.dot(moved);
     struct Motion {
         Vector3r vel = Vector3r::Zero(), angVel = Vector3r::Zero();
     };
     std::vector<Motion> motions(scene_.bodies.size());
     for (const auto& [body, first] : dynamics_.firstOfBody())
-        motions[body] = {motionOf(moved, first), ownAxes(scene_.bodies.state(body)) * motionOf(moved, first + 3)};
+        motions[body] = {all.segment<3>(first), ownAxes(scene_.bodies.state(body)) * all.segment<3>(first + 3)};
     double grown = 0; // work of loads that have grown in this move
     for (auto* load : scene_.loads) {
         const double before = load->work;
@@ -186,67 +195,47 @@ double ElasticSolution::move() {
     return std::sqrt(std::max(0.0, work));
 }
 
-// What three degrees of freedom from this one on have of a motion [m] or [rad].
-Vector3r ElasticSolution::motionOf(const Vector& moved, int degree) const {
-    Vector3r found = Vector3r::Zero();
-    for (int d = 0; d < 3; ++d)
-        if (places_[degree + d] >= 0) found[d] = dynamics_.scale()[degree + d] * moved[places_[degree + d]];
-    return found;
-}
-
 void ElasticSolution::displace(const Vector& moved) {
+    const Vector all = spread(moved).cwiseProduct(scale_);
     if (auto* zones = scene_.zones) {
         auto displacements = zones->displacements();
         for (std::size_t n = 0; n < displacements.size(); ++n)
-            displacements[n] += motionOf(moved, 3 * int(n));
+            displacements[n] += all.segment<3>(3 * n);
         zones->setDisplacements(displacements);
     }
     for (const auto& [body, first] : dynamics_.firstOfBody()) {
         const State& s = scene_.bodies.state(body);
-        const Vector3r turn = ownAxes(s) * motionOf(moved, first + 3);
+        const Vector3r turn = ownAxes(s) * all.segment<3>(first + 3);
         const double angle = turn.norm();
         Quaternionr turned = s.ori;
         if (angle > 0) turned = Quaternionr(Eigen::AngleAxisd(angle, turn / angle)) * turned;
-        scene_.bodies.setPlace(body, s.pos + motionOf(moved, first), turned.normalized());
+        scene_.bodies.setPlace(body, s.pos + all.segment<3>(first), turned.normalized());
     }
 }
 
 // The masses of the scene times a motion; the scale stands for those that are not scaled.
 ElasticSolution::Vector ElasticSolution::inertia(const Vector& motion) const {
-    Vector all(dynamics_.scale().size());
-    for (Eigen::Index i = 0; i < all.size(); ++i)
-        all[i] = places_[i] < 0 ? 0 : motion[places_[i]];
+    Vector all = spread(motion);
     dynamics_.scaleMasses(all);
-    Vector found(count_);
-    for (Eigen::Index i = 0; i < all.size(); ++i)
-        if (places_[i] >= 0) found[places_[i]] = all[i];
-    return found;
+    return ordered(all);
 }
 
 // By the method of Lanczos: with the flexibility, from the displacements under a uniform acceleration on. Let c be the
 // share of a mode in the mass and w its angular frequency; these displacements have c/w⁴ of it, and the momentum c/w.
 double ElasticSolution::findMode(const Vector3r& direction) {
     constexpr int most = 60;
-    constexpr double exact = 1e-9;
+    constexpr double exact = 3e-5; // of a vector; the eigenvalue has the square of this error
     const StillScene still;
-    Vector uniform = Vector::Zero(count_);
-    const auto put = [&](int degree, double value) {
-        if (places_[degree] >= 0) uniform[places_[degree]] = value / dynamics_.scale()[degree];
-    };
-    const auto nodes = scene_.zones ? scene_.zones->displacements().size() : 0;
-    for (std::size_t i = 0; i < 3 * nodes; ++i)
-        put(int(i), direction[i % 3]);
+    Vector uniform = Vector::Zero(scale_.size());
+    if (scene_.zones) {
+        const auto nodes = Eigen::Index(scene_.zones->displacements().size());
+        uniform.head(3 * nodes) = direction.replicate(nodes, 1);
+    }
     for (const auto& [body, first] : dynamics_.firstOfBody())
-        for (int d = 0; d < 3; ++d)
-            put(first + d, direction[d]);
-    const Vector mass = inertia(uniform);
-    const auto flexible = [&](const Vector& forces) {
-        Vector moved = factors_.solve(forces);
-        holdDrives(moved);
-        return moved;
-    };
+        uniform.segment<3>(first) = direction;
+    const Vector mass = inertia(ordered(uniform.cwiseQuotient(scale_)));
     std::vector<Vector> bases, massesOfBases;
-    Vector next = flexible(mass);
+    Vector next = motionUnder(mass);
     std::vector<double> diagonal, beside;
     while (true) {
         const Vector heavy = inertia(next);
@@ -255,31 +244,28 @@ double ElasticSolution::findMode(const Vector3r& direction) {
         if (!bases.empty()) beside.push_back(size);
         bases.push_back(next / size);
         massesOfBases.push_back(heavy / size);
-        next = flexible(massesOfBases.back());
+        next = motionUnder(massesOfBases.back());
         diagonal.push_back(next.dot(massesOfBases.back()));
         for (int twice = 0; twice < 2; ++twice)
             for (std::size_t i = 0; i < bases.size(); ++i)
                 next -= next.dot(massesOfBases[i]) * bases[i];
         const int count = int(bases.size());
-        Eigen::MatrixXd small = Eigen::MatrixXd::Zero(count, count);
-        for (int i = 0; i < count; ++i) {
-            small(i, i) = diagonal[i];
-            if (i > 0) small(i, i - 1) = small(i - 1, i) = beside[i - 1];
-        }
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(small);
-        int best = 0;
-        double largest = 0;
-        for (int i = 0; i < count; ++i) {
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved;
+        solved.computeFromTridiagonal(Eigen::Map<Vector>(diagonal.data(), count),
+                                      Eigen::Map<Vector>(beside.data(), count - 1));
+        const auto momentum = [&](int i) { // 0 of round-off
             const double flexibility = solved.eigenvalues()[i], share = solved.eigenvectors()(0, i);
-            const double momentum = flexibility > 0 ? share * share * std::pow(flexibility, -1.5) : 0;
-            if (momentum <= largest) continue;
-            largest = momentum;
-            best = i;
-        }
+            return flexibility > 0 ? share * share * std::pow(flexibility, -1.5) : 0;
+        };
+        int best = 0;
+        for (int i = 1; i < count; ++i)
+            if (momentum(i) > momentum(best)) best = i;
         const double flexibility = solved.eigenvalues()[best];
         const double error = std::sqrt(next.dot(inertia(next))) * std::abs(solved.eigenvectors()(count - 1, best));
-        if (error * error > exact * flexibility * flexibility && count < std::min(most, count_)) continue;
-        if (error * error > exact * flexibility * flexibility) return 0;
+        if (!(error <= exact * flexibility)) {
+            if (count < std::min(most, count_)) continue;
+            return 0;
+        }
         mode_ = Vector::Zero(count_);
         for (int i = 0; i < count; ++i)
             mode_ += solved.eigenvectors()(i, best) * bases[i];

@@ -33,14 +33,16 @@ public:
 private:
     using Vector = Eigen::VectorXd;
     void displace(const Vector& moved);
-    Vector inertia(const Vector&) const;
+    Vector ordered(const Vector& all) const;
+    Vector spread(const Vector& ordered) const;
     Vector imbalance() const;
     Vector alongDrive(const Load&) const;
-    void holdDrives(Vector& moved) const;
-    Vector3r motionOf(const Vector& moved, int degree) const;
+    Vector motionUnder(const Vector& forces) const;
+    Vector inertia(const Vector& motion) const;
 
     SceneStore& scene_;
     Dynamics dynamics_;
+    Eigen::Map<const Vector> scale_;
     std::vector<int> places_; // of every degree of freedom in the factors; -1 where it is blocked
     int count_ = 0;           // of those that can move
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
