@@ -18,7 +18,6 @@ from .programme import FACETS, Programme
 from .solver import SolverTimeout, Unsolved
 
 MAX_TURNS = 6  # of the facets of friction
-MOMENT_ERROR = 1e-6  # of a joint, over the largest force on any times its length [-]
 SAME_FACTOR = 1e-3  # relative change of the factor at which turning ends [-]
 
 
@@ -90,8 +89,6 @@ class Assembly:
         bare = (self.tension == 0) & (self.cohesion == 0) & np.isinf(self.crushing)
         #: joints whose forces can be anywhere between the corners: dry ones that cannot crush
         self.dry = bare & ~self.elastic
-        #: whether forces act on all points of a joint, although two bear the same (m)
-        self.detailed = ~self.elastic & (not self.plane)
         self.contacts = self._contacts()
         #: whether some joints close a loop, as in a bond, unlike those of an arch or a stack
         self.bonded = self._bonded(free)
@@ -187,8 +184,6 @@ class Assembly:
         """
         turn = np.zeros(len(self.contacts.at))
         best = self._solve(live, dead, sense, turn, fixed)
-        while self.plane and self._addPoints(best):
-            best = self._solve(live, dead, sense, turn, fixed)
         if self.plane:
             return best
         best.facetError = 1 / math.cos(math.pi / FACETS) - 1
@@ -297,9 +292,7 @@ class Assembly:
         return len(one) > count - parts
 
     def _contacts(self):
-        """The points on which forces act: corners of dry joints, else the points of the engine. In
-        the plane two ends with areas that have the same sum and the same centroid bear what all
-        points do, but for crushing."""
+        """The points on which forces act: corners of dry joints, else the points of the engine."""
         at, area, joint = [np.zeros((0, 3))], [np.zeros(0)], []
         starts = np.searchsorted(self.joint, np.arange(len(self.pairs) + 1))
         for j in np.flatnonzero(~self.elastic):
@@ -307,46 +300,14 @@ class Assembly:
             points, areas = self.points[own], self.areas[own]
             if self.dry[j]:
                 points = np.asarray(self.polygons[j])
-            if not self.detailed[j]:
-                along, whole = points @ self.tangents[j, 0], areas.sum()
-                ends = [along.argmin(), along.argmax()]
-                low, high = along[ends]
-                middle = 0.5
-                if high > low and not self.dry[j]:
-                    middle = (along @ areas / whole - low) / (high - low)
-                points, areas = points[ends], whole * np.array([1 - middle, middle])
-            elif self.dry[j]:
+                if self.plane:
+                    along = points @ self.tangents[j, 0]
+                    points = points[[along.argmin(), along.argmax()]]
                 areas = np.full(len(points), areas.sum() / len(points))
             at.append(points)
             area.append(areas)
             joint += [j] * len(points)
         return _Contacts(np.concatenate(at), np.concatenate(area), np.array(joint, int))
-
-    def _addPoints(self, bound):
-        """Let forces act on all points of joints that would crush under the force and the moment of
-        a bound, the second time on those of all joints. Returns whether there are such joints."""
-        crush = ~self.detailed & ~self.elastic & np.isfinite(self.crushing)
-        found, c = np.zeros_like(crush), bound.contacts
-        force = np.bincount(c.joint, bound.normal, len(self.pairs))
-        along = (c.at * self.tangents[c.joint, 0]).sum(axis=1)
-        moment = np.bincount(c.joint, bound.normal * along, len(self.pairs))
-        starts = np.searchsorted(self.joint, np.arange(len(self.pairs) + 1))
-        for j in np.flatnonzero(crush):
-            own = slice(*starts[j : j + 2])
-            at, areas = self.points[own] @ self.tangents[j, 0], self.areas[own]
-            order = np.argsort(at)
-            for sign in (1, -1):  # fill from one end, then from the other
-                x, room = at[order], (self.tension[j] + self.crushing[j]) * areas[order]
-                left = force[j] + self.tension[j] * areas.sum() - (np.cumsum(room) - room)
-                most = np.clip(left, 0, room) - self.tension[j] * areas[order]
-                slack = MOMENT_ERROR * np.abs(force).max() * np.ptp(x)
-                if sign * (x @ most - moment[j]) > slack:
-                    found[j] = True
-                order = order[::-1]
-        if found.any():
-            self.detailed |= crush if self.detailed.any() else found
-            self.contacts = self._contacts()
-        return found.any()
 
 
 #: Points on which forces act: place [m], area [m²] and number of the joint.

@@ -50,7 +50,6 @@ class Bound:
 
     def __post_init__(self):
         self.factor = self.value
-        self.contacts = self.assembly.contacts  #: points on which these forces act
 
     # -- forces ------------------------------------------------------------------------------------
 
@@ -60,21 +59,21 @@ class Bound:
         space."""
         a = self.assembly
         if a.plane:
-            return np.bincount(self.contacts.joint, self.normal, len(a.pairs))
+            return np.bincount(a.contacts.joint, self.normal, len(a.pairs))
         return self.normal
 
     @property
     def directions(self) -> np.ndarray:
         """Angle of the force along the joint on each contact, from the joint's first tangent
         [rad]."""
-        one, two = self.assembly.tangents[self.contacts.joint].swapaxes(0, 1)
+        one, two = self.assembly.tangents[self.assembly.contacts.joint].swapaxes(0, 1)
         return np.arctan2((self.along * two).sum(1), (self.along * one).sum(1))
 
     @property
     def overstressed(self) -> float:
         """How far forces along the joints are above friction and cohesion, as a share of all of
         them [-]."""
-        a, c = self.assembly, self.contacts
+        a, c = self.assembly, self.assembly.contacts
         strength = a.cohesion[c.joint] * c.area + a.friction[c.joint] * self.normal
         along = np.linalg.norm(self.along, axis=1)
         if a.plane:  # one force along each joint
@@ -108,7 +107,7 @@ class Bound:
         ``crushing``, and ``loads``, what the live load at its factor and the dead loads do, all
         counted positive.
         """
-        a, c = self.assembly, self.contacts
+        a, c = self.assembly, self.assembly.contacts
         opening, slide = self.jumps(c.joint, c.at)
         cohesive = a.cohesion[c.joint] * c.area * np.linalg.norm(slide, axis=1)
         cohesion, shear = float(cohesive.sum()), self.along * slide
@@ -153,7 +152,7 @@ class Bound:
     def joints(self) -> np.ndarray:
         """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or
         ``"crushes"`` (m)."""
-        a, c = self.assembly, self.contacts
+        a, c = self.assembly, self.assembly.contacts
         states = np.full(len(a.pairs), "rests", dtype="<U7")
         opening, slide = self.jumps(c.joint, c.at)
         speed = np.linalg.norm(slide, axis=1)
@@ -232,13 +231,13 @@ class Bound:
             "cells": np.split(np.arange(len(points)), np.cumsum(sizes)[:-1]),
         }
         states, count = self.joints(), len(a.pairs)
-        opening, slide = self.jumps(self.contacts.joint, self.contacts.at)
+        opening, slide = self.jumps(a.contacts.joint, a.contacts.at)
         widest, closest, along = np.zeros(count), np.zeros(count), np.zeros((count, 3))
-        np.maximum.at(widest, self.contacts.joint, opening)
-        np.maximum.at(closest, self.contacts.joint, -opening)
+        np.maximum.at(widest, a.contacts.joint, opening)
+        np.maximum.at(closest, a.contacts.joint, -opening)
         order = np.argsort(np.linalg.norm(slide, axis=1))
         # the last of a joint stays, and that is its fastest point
-        along[self.contacts.joint[order]] = slide[order]
+        along[a.contacts.joint[order]] = slide[order]
         sizes = [len(p) for p in a.polygons]
         corners, which = np.concatenate(a.polygons), np.repeat(np.arange(count), sizes)
         one, two = a.pairs[which].T

@@ -36,7 +36,8 @@ def loosened(assembly, live, dead):
             break
         if _belongs(assembly, bound) and (least is None or bound.factor < least.factor):
             least = bound
-        pressed = np.bincount(bound.contacts.joint, bound.normal, len(assembly.pairs))
+        joint = assembly.contacts.joint
+        pressed = np.bincount(joint, bound.normal, len(assembly.pairs))
         friction = np.where(pressed < OPEN_FORCE_RATIO * pressed.max(), 0, smooth.friction)
         if (friction == smooth.friction).all():
             break
@@ -95,7 +96,7 @@ def _smooth(assembly, dead):
 def _belongs(assembly, bound):
     """Whether the mechanism of a structure with less friction is one of the whole structure,
     too."""
-    c = bound.contacts
+    c = assembly.contacts
     speed = np.linalg.norm(bound.jumps(c.joint, c.at)[1], axis=1)
     friction = (assembly.friction - bound.assembly.friction)[c.joint]
     missing = (friction * np.maximum(bound.normal, 0) * speed).sum()

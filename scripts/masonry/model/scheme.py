@@ -73,7 +73,7 @@ class Scheme:
             return
         added = sum((factors[b] - 1) * m for b, m in mass.items())
         self._limits, self._factors = (self.limit, longer), factors
-        self.addedInertia = added / whole
+        self.addedInertia = round(added / whole, 6)
         self.chooseTimeStep(longer)
 
     def useTrueInertia(self):
