@@ -139,10 +139,10 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     assert min(fell) < answer(scene, "noticed_at")
     times = scene.results.column("time_s")
     assert answer(scene, "time_of_collapse") == approx(min(fell) - times[1], abs=0.05)
-    # the shake is not damped, and when the fall is noticed no joint holds a stone any more
+    # the shake is not damped; what a joint still holds when the fall is noticed is from then on
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
-    assert shaken == approx(damped[1], rel=1e-6) and damped[-1] == approx(shaken, rel=1e-6)
+    assert shaken == approx(damped[1], rel=1e-6) and damped[-1] >= shaken
 
 
 @mark.parametrize(

@@ -78,6 +78,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     for (auto* load : loads)
         load->workAfter(scene.dt, motionOf);
     if (!shaking.samples.empty()) ++shaking.steps;
+    stepChange = 0;
 }
 
 // What the kinetic energy changes by with the inertia of bodies is an input. Velocities stay.
@@ -164,6 +165,10 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
             }
             for (int i = 0; bodies.isScaled() && d < 3 && i < count; ++i) // added inertia has no weight
                 motion.force[d][i] -= (bodies.mass[first + i] - bodies.weighed[first + i]) * gravity[d];
+            // Velocities are those in the middle of a step: what flies falls for the mean of two unequal steps.
+            for (int i = 0; stepChange != 0 && d < 3 && i < count; ++i)
+                if (forces[first + i].isZero(0))
+                    motion.force[d][i] -= 0.5 * stepChange / scene.dt * bodies.weighed[first + i] * gravity[d];
             for (int i = 0; turning && d >= 3 && i < count; ++i)
                 if (motion.inSpace[i] != 0) motion.force[d][i] = motion.free[d][i] = 0;
         }

@@ -19,6 +19,7 @@ public:
     double massDamping = 0;                   // mass-proportional viscous damping [1/s]
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
     GroundMotion shaking;                     // sets the gravity of every step while it has a record
+    double stepChange = 0;                    // of a time step that follows the state, in the present step [s]
 
     // Factors on mass and moments of inertia of bodies by their ids, without a weight [-]; beyond its end 1. For states
     // of rest: inertia of the few bodies that set the time step makes it longer, and changes no force at rest.

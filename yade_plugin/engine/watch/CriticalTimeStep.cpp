@@ -88,7 +88,9 @@ void followTimeStep(SceneStore& store) {
         const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
         const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
         double& dt = store.scene().dt;
-        if (dt > wanted || growth * dt < wanted) dt = wanted;
+        if (!(dt > wanted || growth * dt < wanted)) continue;
+        if (store.integrator) store.integrator->stepChange = wanted - dt;
+        dt = wanted;
     }
 }
 
