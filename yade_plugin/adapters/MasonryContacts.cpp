@@ -26,7 +26,9 @@ std::vector<int> looseIn(const SceneStore& store) {
 } // namespace
 
 void MasonryContacts::lookAtFalls(SceneStore& store) {
-    if (!takesJoints || scene->iter % lookEvery != 0) return;
+    if (!takesJoints) return;
+    falls_.watch(store);
+    if (scene->iter % (lookEvery / 2) != 0) return;
     const auto loose = looseIn(store);
     falls_.look(store, loose, sizes(), store.gravity());
     undamp(store, loose);

@@ -90,7 +90,7 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
                  "since, when that was [s]; fell, when the block had turned by 60°, or moved by its diameter and come "
                  "down by half its thickness, since the reference state [s], None if it has not; most, its largest "
                  "kinetic energy since then [J]; and at, "
-                 "when it had that [s]. Looked at every tenth step.");
+                 "when it had that [s]. Looked at every fifth step.");
     }
 
     bool dampsLoose = true;

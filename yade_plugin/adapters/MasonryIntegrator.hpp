@@ -39,6 +39,8 @@ class MasonryIntegrator : public EngineAdapter<MasonryIntegrator>, public Integr
         ledgerOfBodies<I>(visit);
         GravityWork::describe<I>(visit);
         visit("factorsBefore", &I::factorsBefore, described("inertiaFactors in the last step"), Hidden);
+        visit("stepChange", &I::stepChange, described("Time step that follows the state, less the one before [s]"),
+              Hidden);
         visit("last", computed(&I::lastForces, &I::setLastForces),
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
         visit("shaking", &MasonryIntegrator::visitShaking, described("How far the record of the ground's motion is"));

@@ -29,18 +29,25 @@ void countLastPush(const NearBlocks& blocks, double dt, ElasticAccount& account)
 // that acted on what has gone as if it stayed to the end of the step.
 Wrench keepEnergy(const NearBlocks& blocks, double normalStiffness, double dt, const ContactChange& change,
                   const Wrench& elastic, const Wrench& dashpot, OverlapFinder& finder, ElasticAccount& account) {
+    const auto potential = [&] {
+        return normalStiffness * finder.potential(blocks.oneBlock, blocks.otherBlock, blocks.pose);
+    };
     const Wrench last = account.push;
     account.push = elastic;
     const double work = dt * powerOf(blocks, elastic);
     const bool unknown = !change.begins && last.force.isZero(0);
     if (!change.begins && !unknown && std::abs(change.area) <= noticed) {
         account.given -= 0.5 * work;
+        if (account.kept) account.excess = account.given - potential();
+        account.kept = false;
         return elastic;
     }
-    const double potential = normalStiffness * finder.potential(blocks.oneBlock, blocks.otherBlock, blocks.pose);
-    const double missing = potential + 0.5 * work - account.given;
+    const double stored = potential();
+    const double missing = stored + 0.5 * work - account.given;
     if (unknown || (change.begins && missing >= 0)) { // they were in each other before they came under this law
-        account.given = potential;
+        account.given = stored;
+        account.excess = 0;
+        account.kept = false;
         return elastic;
     }
     const auto added = change.begins || change.area > 0 ? elastic : standing(blocks, last);
@@ -53,7 +60,8 @@ Wrench keepEnergy(const NearBlocks& blocks, double normalStiffness, double dt, c
     all.add(share, added);
     account.push = all;
     account.given -= 0.5 * dt * powerOf(blocks, all);
-    account.excess = share != 0 ? account.given - potential : 0;
+    account.excess = share != 0 ? account.given - stored : 0;
+    account.kept = share != 0;
     return all;
 }
 

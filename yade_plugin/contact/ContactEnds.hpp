@@ -23,9 +23,10 @@ struct ElasticAccount {
     // elsewhere.
     Wrench push;
     double given = 0;  // what the blocks have given to it since the contact began, up to the place of the last step [J]
-    double excess = 0; // elastic energy less the potential: in a step in which a contact begins or ends, else 0 [J]
+    double excess = 0; // elastic energy less the potential, by forces that kept the energy in place of those of it [J]
+    bool kept = false; // whether the force of the last step was such a one
 
-    template <class Visit> void visitState(Visit&& visit) { visit(push, given, excess); }
+    template <class Visit> void visitState(Visit&& visit) { visit(push, given, excess, kept); }
 };
 
 struct ContactChange { // of the contact area since the last step

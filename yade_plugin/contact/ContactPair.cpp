@@ -75,7 +75,6 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
     effect.acts = effect.touches;
     effect.damped = effect.lost = effect.dampingCoefficient = 0;
     auto& account = memory.elastic;
-    account.excess = 0;
     if (memory.touched()) {
         effect.damped -= 0.5 * dt * powerOf(blocks, memory.dashpot);
         countLastPush(blocks, dt, account);
@@ -86,6 +85,7 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
                        : Wrench();
     if (!(effect.touches && overlap.area > 0)) {
         effect.wrench = potential;
+        account.excess = 0;
         if (!effect.touches && memory.touched())
             effect.acts = endOn(blocks, memory.friction.normal, dt, account, effect.wrench);
         if (memory.touched()) effect.lost -= 0.5 * dt * powerOf(blocks, memory.rubbing);

@@ -165,10 +165,14 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
             }
             for (int i = 0; bodies.isScaled() && d < 3 && i < count; ++i) // added inertia has no weight
                 motion.force[d][i] -= (bodies.mass[first + i] - bodies.weighed[first + i]) * gravity[d];
-            // Velocities are those in the middle of a step: what flies falls for the mean of two unequal steps.
-            for (int i = 0; stepChange != 0 && d < 3 && i < count; ++i)
-                if (forces[first + i].isZero(0))
-                    motion.force[d][i] -= 0.5 * stepChange / scene.dt * bodies.weighed[first + i] * gravity[d];
+            // Velocities are those in the middle of a step: what flies falls for the mean of two unequal steps. The
+            // product of both velocities, which is the kinetic energy in the middle of equal steps, is then too large.
+            for (int i = 0; stepChange != 0 && d < 3 && i < count; ++i) {
+                const double speed = bodies.velocity[d][first + i], weight = bodies.weighed[first + i] * gravity[d];
+                if (!forces[first + i].isZero(0) || speed == 0 || motion.free[d][i] == 0) continue;
+                motion.force[d][i] -= 0.5 * stepChange / scene.dt * weight;
+                sum.kinetic -= 0.25 * stepChange * weight * speed;
+            }
             for (int i = 0; turning && d >= 3 && i < count; ++i)
                 if (motion.inSpace[i] != 0) motion.force[d][i] = motion.free[d][i] = 0;
         }

@@ -21,6 +21,15 @@ double kineticEnergy(const BodyColumns& bodies, int body) {
 
 } // namespace
 
+void FallenBlocks::watch(const SceneContents& contents) {
+    for (auto& fall : all_) {
+        const double energy = kineticEnergy(contents.bodies, fall.body);
+        if (energy <= fall.most) continue;
+        fall.most = energy;
+        fall.at = contents.scene().time;
+    }
+}
+
 void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& loose, const std::vector<Size>& sizes,
                         const Vector3r& gravity) {
     Eigen::Index down;
@@ -31,11 +40,6 @@ void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& l
         known = std::lower_bound(known, all_.end(), body, [](const Fall& fall, int id) { return fall.body < id; });
         if (known == all_.end() || known->body != body) known = all_.insert(known, {body, now, -1, 0, now});
         auto& fall = *known;
-        const double energy = kineticEnergy(contents.bodies, body);
-        if (energy > fall.most) {
-            fall.most = energy;
-            fall.at = now;
-        }
         if (fall.fell >= 0) continue;
         const auto& s = contents.bodies.state(body);
         const bool turned = std::abs((s.refOri.conjugate() * s.ori).w()) < std::cos(0.5 * turn);

@@ -70,13 +70,18 @@ double timeStepLimit(SceneStore& store, bool anew) {
     return limit();
 }
 
+static void changeTimeStep(SceneStore& store, double dt) {
+    if (store.integrator) store.integrator->stepChange = dt - store.scene().dt;
+    store.scene().dt = dt;
+}
+
 void beginFollowing(SceneStore& store) {
     for (auto* one : store.contacts)
         one->boundPairs(store, store.damping());
     const double limit = timeStepLimit(store, true);
     for (auto* one : store.contacts) {
         one->jointEigenvalue = store.kept<KnownEigenvalue>().value;
-        if (one->stepShare > 0) store.scene().dt = one->stepShare * limit;
+        if (one->stepShare > 0) changeTimeStep(store, one->stepShare * limit);
     }
 }
 
@@ -87,10 +92,8 @@ void followTimeStep(SceneStore& store) {
         one->boundPairs(store, store.damping());
         const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
         const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
-        double& dt = store.scene().dt;
-        if (!(dt > wanted || growth * dt < wanted)) continue;
-        if (store.integrator) store.integrator->stepChange = wanted - dt;
-        dt = wanted;
+        const double dt = store.scene().dt;
+        if (dt > wanted || growth * dt < wanted) changeTimeStep(store, wanted);
     }
 }
 
