@@ -142,7 +142,7 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     # the shake is not damped; what a joint still holds when the fall is noticed is from then on
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
-    assert shaken == approx(damped[1], rel=1e-6) and damped[-1] >= shaken
+    assert shaken == approx(damped[1], rel=1e-6) and damped[-1] >= (1 - 1e-12) * shaken
 
 
 @mark.parametrize(
