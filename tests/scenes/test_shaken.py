@@ -3,7 +3,7 @@
 a record."""
 
 from hosted import *
-from masonry.model.scheme import Scheme
+from masonry.run.run import Run
 from masonry.stages.shake import displacements
 
 EVERY = 0.005
@@ -27,15 +27,24 @@ def shaken(folder, *words, **settings):
     return scene.results.column("top_x_mm")
 
 
-def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
+@mark.parametrize("functors", [False, True])
+def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch, functors):
     """Each step has the acceleration of its middle, which is the mean where that changes evenly."""
-    steps, put = {}, Scheme.setGravity
-    monkeypatch.setattr(
-        Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g))
-    )
-    shaken(tmp_path, accelerations=[3.0, 0.0], every=0.02)
-    assert sum(steps.values()) * O.dt == approx(-0.5 * 3.0 * 0.02, rel=1e-4)
-    assert (max(steps) - min(steps)) * O.dt == approx(0.02, abs=O.dt)
+    accelerations, advance = [], Run.advance
+
+    def one(run, steps):
+        for _ in range(steps):
+            advance(run, 1)
+            accelerations.append(engine("integrator").gravity[0])
+
+    scene = block(tmp_path, functors=functors)
+    monkeypatch.setattr(Run, "advance", one)
+    scene.shake([3.0, 0.0], every=0.02, after=0.01)
+    felt = [a for a in accelerations if a]
+    assert felt == accelerations[: len(felt)]
+    assert sum(felt) * O.dt == approx(-0.5 * 3.0 * 0.02, rel=1e-4)
+    assert len(felt) * O.dt == approx(0.02, abs=O.dt)
+    assert engine("integrator").gravity[0] == 0
 
 
 def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():

@@ -53,7 +53,9 @@ def fallingStack(folder, stand, towards):
     scene.finish()
 
 
-SCATTER = {pushedWall: 0.03, leaningArch: 1e-6, fallingStack: 0.15}
+SCATTER = {pushedWall: 0.03, leaningArch: 1e-6, fallingStack: 0.02}
+#: Where rubble lies, and when it is at rest, hang on round-off in every impact.
+OF_RUBBLE = re.compile(r"\d+ (rubble_(length|height|reach).*|time_to_rest)").fullmatch
 
 
 @functools.cache
@@ -73,7 +75,7 @@ def answers(build, folder, stand, towards):
     found = {**measured, **stages, **wall}
     # a crack in what falls is as wide as it was when the run happened to end
     noise = [*NOISE, *(["largest_crack_mm"] if run["collapsed"] else [])]
-    return {key: value for key, value in found.items() if key not in noise}
+    return {k: v for k, v in found.items() if k not in noise and not OF_RUBBLE(k)}
 
 
 @mark.parametrize("place", PLACES)

@@ -369,11 +369,11 @@ class Play:
         """Let every advance count its steps."""
         advance = self.scene.running.advance
 
-        def counted(steps, one=None):
+        def counted(steps):
             self.steps += steps
             if self.steps > MOST_STEPS:
                 raise TooLong(f"{self.steps} steps in {', '.join(self.stages)}")
-            advance(steps, one)
+            advance(steps)
 
         self.scene.running.advance = counted
 

@@ -84,8 +84,8 @@ class Observed(Scene):
         self.running.show = lambda *args, **more: None  # a study has thousands of runs
         advance = self.running.advance
 
-        def advanceAndLook(steps, one=None):
-            advance(steps, one)
+        def advanceAndLook(steps):
+            advance(steps)
             self.looked += 1
             if len(self.model.interactions) < 500 or self.looked % 20 == 0:
                 self.look()

@@ -74,8 +74,8 @@ double largestEigenvalueOf(const BlockStiffness& stiffness, const ContactBody& b
     BlockStiffness turned = stiffness;
     if (body.blocked != 0) { // blocked axes are global ones
         BlockStiffness turn = BlockStiffness::Zero();
-        turn.topLeftCorner<3, 3>() = body.turn;
-        turn.bottomRightCorner<3, 3>() = spins ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : body.turn;
+        turn.block<3, 3>(0, 0) = body.turn;
+        turn.block<3, 3>(3, 3) = spins ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : body.turn;
         turned = turn * stiffness * turn.transpose();
     }
     Eigen::Matrix<double, 6, 1> scale;

@@ -89,6 +89,10 @@ class Motion:
     def _moved(self):
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
+    def isFar(self):
+        """Whether a block has moved by more than :attr:`far` times its size since the last rest."""
+        return any(v.norm() > self.far * size for v, size in zip(self._moved(), self._sizes))
+
     def checkFall(self, far=None):
         """Raise Collapsed if a block is fast and has moved by more than ``far`` times its size
         since the last rest."""

@@ -123,24 +123,20 @@ class Scheme:
         if self.limit != limit:
             self.chooseTimeStep(limit)
 
-    def chooseTimeStep(self, limit=None, fraction=None):
+    def chooseTimeStep(self, limit=None):
         """Choose the time step for the present damping. Returns the stable limit.
 
         :param limit: if known [s]; that of blocks that have moved differs in its third digit
-        :param fraction: time step over limit [-]; None: that of the options
         """
         self.limit = limit or timeStepLimit()
-        O.dt = self.limit * (fraction or self.args.dt_fraction)
+        O.dt = self.args.dt_fraction * self.limit
         return self.limit
 
-    def followStep(self, fraction=None):
+    def followStep(self):
         """In a scene whose joints become contacts: let the time step follow what the present state
-        allows, until :meth:`keepStep`.
-
-        :param fraction: as in :meth:`chooseTimeStep`
-        """
+        allows, until :meth:`keepStep`."""
         if self.contacts:
-            self.contacts.follow(fraction or self.args.dt_fraction)
+            self.contacts.follow(self.args.dt_fraction)
 
     def keepStep(self):
         """Let the time step stay what it is; :meth:`chooseTimeStep` follows it."""

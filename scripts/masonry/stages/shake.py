@@ -19,7 +19,7 @@ from ..terminal import say
 from ..run import batch
 from ..scene.accelerograms import components, drift
 from ..scene.ground import UNITS, readRecord, record
-from ..run.option_table import USUAL, Damping
+from ..run.option_table import Damping
 from ..scene.script import SHAKES
 from .gravity import sideways
 from .answers import COLLAPSED, DONE, Answer
@@ -27,9 +27,6 @@ from .rest import settle
 from .stage import Duration, Time, Timed, combines, stage, timed
 
 TABLE = "shakes.csv"
-#: Time step over its limit without numerical damping, under which joints that yield need the larger
-#: margin of ``--dt-fraction``; unless the user chooses that option.
-UNDAMPED = 0.95
 LONGEST = 4.0  # [s]: the longest first period that is looked for
 
 
@@ -70,10 +67,8 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     at, scheme = scene.running.stage(name, Damped()), scene.model.scheme
     scheme.trueMasses(name)
     scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
-    usual = scene.args.dt_fraction == USUAL["dt_fraction"]
-    fraction = UNDAMPED if usual and not damping else None
-    at.limit = scheme.chooseTimeStep(at.limit, fraction)
-    scheme.followStep(fraction)
+    at.limit = scheme.chooseTimeStep(at.limit)
+    scheme.followStep()
     return at
 
 
@@ -126,7 +121,8 @@ def shake(
 
     ``--record FILE`` replaces the record of the first shake of a scene that is none of
     :meth:`shakeAgain`, with its time between samples, factor and unit, and ``--scale S`` makes that
-    shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
+    shake S times as strong. A record that does not end at rest is named with its numbers; nothing
+    is corrected.
 
     :param accelerations: a list, or the path of a file (:mod:`masonry.scene.accelerograms`); or
         three paths, of both horizontal components and the vertical one, upwards
@@ -163,11 +159,22 @@ def shake(
         )
     scheme = scene.model.scheme
     at.gravity = at.gravity or list(scheme.now)
-    scheme.setGravity(Vector3(*at.gravity))
-    scheme.shake(motions, axes, every, scale)
-    duration = (len(values) - 1) * every + after
-    timed(scene, at, scene.share * duration)
-    scheme.shake([], [], every, scale)
+    down, times = Vector3(*at.gravity), every * np.arange(len(values))
+    scheme.setGravity(down)
+    duration = scene.share * ((len(values) - 1) * every + after)
+
+    def before(done, beyond):
+        middle = (done + 0.5) * O.dt
+        accelerations = (float(np.interp(middle, times, one, right=0.0)) for one in motions)
+        scheme.setGravity(sum((-scale * a * axis for a, axis in zip(accelerations, axes)), down))
+
+    if scene.description.functors:  # NewtonIntegrator takes no record
+        timed(scene, at, duration, before, each=1)
+        scheme.setGravity(down)
+    else:
+        scheme.shake(motions, axes, every, scale)
+        timed(scene, at, duration)
+        scheme.shake([], [], every, scale)
     return DONE
 
 

@@ -341,11 +341,11 @@ class Timed:
     overturned: float = 0.0  # largest Overturning.share() of the rows [-]
 
 
-def timed(scene, at, duration, before=None, after=None):
+def timed(scene, at, duration, before=None, after=None, each=20):
     """Steps for a duration [s], with rows and frames evenly in time.
 
     :param before: function of the number of ticks so far and after the next stretch, called before
-        each stretch of at most 20; None: a stretch ends with a row
+        each stretch of at most ``each``; None: a stretch ends with a row
     :param after: function that is called after each row
     """
     running = scene.running
@@ -354,7 +354,7 @@ def timed(scene, at, duration, before=None, after=None):
     length = max(1, round(duration / at.tick))
     perRow = stretch = max(1, length // ROWS)
     if before:
-        stretch = min(20, perRow)
+        stretch = min(each, perRow)
         perRow = perRow // stretch * stretch
     perFrame = max(1, length // FRAMES)
     while at.done < length:

@@ -195,13 +195,13 @@ void markCorners(const std::vector<std::array<double, 2>>& points, std::vector<b
     std::sort(order.begin(), order.end(), before);
     for (int half = 0; half < 2; ++half) {
         std::vector<int> chain; // of one side of the hull, counter-clockwise
-        const auto turnsLeft = [&](int next) {
+        const auto isCorner = [&](int next) {
             const auto &a = points[chain[chain.size() - 2]], &b = points[chain.back()], &c = points[next];
             const double u[] = {b[0] - a[0], b[1] - a[1]}, v[] = {c[0] - b[0], c[1] - b[1]};
             return u[0] * v[1] - u[1] * v[0] > straight * std::hypot(u[0], u[1]) * std::hypot(v[0], v[1]);
         };
         for (int next : order) {
-            while (chain.size() > 1 && !turnsLeft(next))
+            while (chain.size() > 1 && !isCorner(next))
                 chain.pop_back();
             chain.push_back(next);
         }
