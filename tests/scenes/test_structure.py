@@ -177,10 +177,10 @@ def test_a_support_is_released_and_the_other_one_carries_all(tmp_path):
     carried = lambda name: -last(scene, f"{name}_force_z_kN")
     assert carried("leg2") > 0.1
     scene.release(right, "xyzXYZ")
-    scene.run(0.2)
+    scene.run(0.2, damping=0.3)  # of the vibration after the sudden end
     weight = 1e-3 * STONE * 1.0 * 0.2 * 0.2
     # the leg has fallen off, and hangs on nothing: the joint has no tensile strength
-    assert carried("leg0") + carried("leg1") == approx(weight, rel=0.05)
+    assert carried("leg0") + carried("leg1") == approx(weight, rel=1e-5)
     assert last(scene, "leg2_z_mm") < -50
     with raises(ValueError, match="release: leg2 is not held along x"):
         scene.release(right, "x")

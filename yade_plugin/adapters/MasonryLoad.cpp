@@ -16,7 +16,7 @@ void MasonryLoad::action() {
             throw std::invalid_argument("MasonryLoad.body " + std::to_string(id) +
                                         " is a deformable unit; load a rigid block joined to it");
     });
-    act(*scene, scope->gravity(), scope->integrator);
+    act(*scene, scope->gravity(), [&](int id) { return scope->integrator ? scope->integrator->inertiaFactor(id) : 1; });
     scope.end();
 }
 

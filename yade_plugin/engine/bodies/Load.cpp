@@ -2,7 +2,6 @@
 #include "Load.hpp"
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
-#include "Integrator.hpp"
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -27,7 +26,7 @@ std::vector<std::string> Load::problems() const {
     return found;
 }
 
-void Load::act(yade::Scene& scene, const Vector3r& gravity, const Integrator* integrator) {
+void Load::act(yade::Scene& scene, const Vector3r& gravity, const std::function<double(int)>& inertiaFactor) {
     parts_.clear();
     eachBody([&](int id) { parts_.push_back({id, parts_.empty() ? force : Vector3r::Zero(), Vector3r::Zero()}); });
     const auto shareOf = [&](std::size_t n) { return shares.empty() ? 1.0 : shares[n]; };
@@ -48,7 +47,7 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity, const Integrator* in
         arm = state.ori * state.refOri.conjugate() * ((n ? otherPoints[n - 1] : point) - state.refPos);
         if (!driven) continue;
         const double share = shareOf(n);
-        const double factor = integrator ? integrator->inertiaFactor(id) : 1;
+        const double factor = inertiaFactor(id);
         const Vector3r perMass = inverseMass(state) / factor, lever = arm.cross(d);
         const yade::Matrix3r perInertia = inverseInertia(state) / factor;
         const Vector3r push = sums.forces[id] + force + state.mass * gravity;

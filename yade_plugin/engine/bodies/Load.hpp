@@ -2,10 +2,9 @@
 // A load on rigid blocks, at points fixed to them, from which an engine derives; and loads that are not ours.
 #pragma once
 #include "host/Yade.hpp"
+#include <functional>
 
 namespace masonry {
-
-class Integrator;
 
 using yade::Vector3r;
 
@@ -58,8 +57,9 @@ public:
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
-    // Adds force and reaction to the forces of the present step. `gravity` is that of the integrator [m/s²].
-    void act(yade::Scene&, const Vector3r& gravity, const Integrator*);
+    // Adds force and reaction to the forces of the present step. The integrator has this gravity [m/s²], and this
+    // factor on the inertia of a body by its id [-].
+    void act(yade::Scene&, const Vector3r& gravity, const std::function<double(int)>& inertiaFactor);
     // Displacement of the loaded point since the reference state [m].
     Vector3r displacementIn(const yade::Scene&) const;
 

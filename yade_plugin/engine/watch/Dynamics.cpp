@@ -26,7 +26,7 @@ struct FoundBounds {
 
 } // namespace
 
-Dynamics::Dynamics(SceneStore& store, Damping damping) : store_(store) {
+Dynamics::Dynamics(SceneStore& store, Damping damping, Machines machines) : store_(store), machines_(machines) {
     if (store.zones)
         for (const auto& unit : store.zones->units())
             for (double mass : unit.elasticity->masses())
@@ -39,10 +39,14 @@ Dynamics::Dynamics(SceneStore& store, Damping damping) : store_(store) {
             for (int id : *ids)
                 if (id != Connectors::ground) addBody(id, "a connector holds body");
     for (const auto* load : store.loads)
-        if (!load->machineStiffness().isZero(0)) addBody(load->body, "a testing machine loads body");
+        if (hasMachine(*load)) addBody(load->body, "a testing machine loads body");
     splitDamping(damping);
     assemble();
     addBlocks();
+}
+
+bool Dynamics::hasMachine(const Load& load) const {
+    return (load.engaged || machines_ == All) && !load.machineStiffness().isZero(0);
 }
 
 void Dynamics::addBody(int id, const char* holder) {
@@ -165,8 +169,11 @@ template <class F> void Dynamics::eachPart(F&& visit) const {
                              connectors->stiffnessOf(c),
                              connectors->rotationalStiffnessOf(c)}));
     for (const auto* load : store_.loads)
-        if (const Vector3r k = load->machineStiffness(); !k.isZero(0))
-            visitAll(partOf({{load->body, Connectors::ground}, {load->point, load->point}, k, Vector3r::Zero()}));
+        if (hasMachine(*load))
+            visitAll(partOf({{load->body, Connectors::ground},
+                             {load->point, load->point},
+                             load->machineStiffness(),
+                             Vector3r::Zero()}));
     if (!store_.zones) return;
     for (const auto& unit : store_.zones->units()) {
         const auto matrix = unit.elasticity->matrix();

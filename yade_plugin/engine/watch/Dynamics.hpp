@@ -24,7 +24,9 @@ inline yade::Matrix3r ownAxes(const yade::State& s) {
 class Dynamics {
 public:
     enum Damping { Each, AsIfAllWereDamped }; // by its own alpha, or by the largest
-    Dynamics(SceneStore&, Damping);
+    // A testing machine that is not engaged yet has no force; a time step must be stable with it, too.
+    enum Machines { All, Engaged };
+    Dynamics(SceneStore&, Damping, Machines = All);
 
     // The largest eigenvalue, at most 2.1 % above it [1/s²].
     double highest() const;
@@ -66,6 +68,7 @@ private:
         scale_.push_back(blocked ? 0 : std::sqrt(1 / mass));
         damping_.push_back(damping);
     }
+    bool hasMachine(const Load&) const;
     void addBody(int id, const char* holder);
     void addBodies(const JointView&);
     void splitDamping(Damping);
@@ -80,6 +83,7 @@ private:
     void addBlocks();
 
     SceneStore& store_;
+    Machines machines_;
     std::vector<double> scale_, damping_; // of a degree of freedom: sqrt(1 / mass), 0 where it is blocked; and alpha
     double common_ = 1;                   // a factor 1 + alpha of all that moves, which is not in `scale_`
     std::map<int, int> firstOfBody_;      // first degree of freedom of a rigid body

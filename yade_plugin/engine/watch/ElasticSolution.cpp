@@ -73,7 +73,7 @@ private:
 
 ElasticSolution::ElasticSolution()
     : scene_(*StillScene()),
-      dynamics_(scene_, Dynamics::AsIfAllWereDamped),
+      dynamics_(scene_, Dynamics::AsIfAllWereDamped, Dynamics::Engaged),
       scale_(dynamics_.scale().data(), Eigen::Index(dynamics_.scale().size())),
       places_(dynamics_.scale().size(), -1) {
     const StillScene still;
