@@ -126,7 +126,8 @@ def shake(
 
     ``--record FILE`` replaces the record of the first shake of a scene that is none of
     :meth:`shakeAgain`, with its time between samples, factor and unit, and ``--scale S`` makes that
-    shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
+    shake S times as strong. A record that does not end at rest is named with its numbers; nothing
+    is corrected.
 
     :param accelerations: a list, or the path of a file (:mod:`masonry.scene.accelerograms`); or
         three paths, of both horizontal components and the vertical one, upwards
