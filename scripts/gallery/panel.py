@@ -35,7 +35,7 @@ def standing(wall, masonry, stress, height, edges=()):
 if args.four_edges:
     brick, joint, unit = (0.23, 0.11, 0.076), 0.01, (0.24, 0.11, 0.086)  # [m]
     ft, fv0, stress = 0.3e6, 0.42e6, 20e3  # [Pa]
-    known = dict(E=3.5e9, unit_E=50e9, fc=16e6, friction=0.6, density=1900, unit_ft=2e6)
+    known: dict = dict(E=3.5e9, unit_E=50e9, fc=16e6, friction=0.6, density=1900, unit_ft=2e6)
     wall = bricks.Wall(1.92, 1.29, unit=unit)
     ends = [n for n, b in enumerate(wall) if min(b.low[0], 1.92 - b.high[0]) < 1e-6]
     code = panelPressure(1.92, 1.29, unit, flexural=1.5 * ft, rupture=3e6, stress=stress)

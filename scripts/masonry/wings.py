@@ -19,12 +19,12 @@ WINGS = {
 }
 
 PUBLIC = """
-    arguments auxiliary background bricks bricks.blocks bricks.geometry errors folders host materials
-    materials.codes materials.fields materials.settings memory model.arrays model.bodies
+    arguments auxiliary background bricks bricks.blocks bricks.geometry errors folders host
+    materials materials.codes materials.fields materials.settings memory model.arrays model.bodies
     model.load_names numbers.columns numbers.cracks numbers.curves numbers.drawing numbers.files
     numbers.frames numbers.loops numbers.quantities numbers.run_data packages run.batch
-    run.drawing_program run.lock run.progress scene.accelerograms scene.ground
-    scene.options scene.parsing scene.summary terminal texts units wings
+    run.drawing_program run.lock run.progress scene.accelerograms scene.ground scene.options
+    scene.parsing scene.summary terminal texts units wings
 """.split()
 
 

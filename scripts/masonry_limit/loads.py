@@ -19,7 +19,7 @@ def forces(model, assembly, pushed=None, pressed=None):
         block, force = assembly.ids.index(load.body), load.force
         point = _placeOf(assembly, load.body, load.point)
         # of all vertical loads on it the press counts, with its weight
-        if pressed and load.body == pressed[0].body and not load.label.endswith(arrays.LIFT):
+        if pressed and load.body == pressed[0].body and not load.isLift:
             isPress = load.label == f"{pressed[0].name}_press"
             down = 1e3 * pressed[1] - model.supports.weightOf(pressed[0])
             force = np.array([force[0], force[1], -down * isPress])

@@ -4,7 +4,7 @@
 /usr/bin/python3 -m masonry_study.report DIR
 /usr/bin/python3 -m masonry_study.report DIR --measure base_shear_end_kN --demand 90,100,110
 /usr/bin/python3 -m masonry_study.report DIR --limit 20          of an incremental dynamic analysis
-/usr/bin/python3 -m masonry_study.report DIR --by damage         a fragility for each class of damage
+/usr/bin/python3 -m masonry_study.report DIR --by damage         a fragility for each class
 
 The pictures go into the folder of the study.
 """

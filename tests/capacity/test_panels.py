@@ -16,7 +16,7 @@ def test_the_example_of_think_brick_australia():
 @mark.parametrize("length, height", [(2.0, 3.0), (4.0, 2.5), (6.0, 2.5)])
 @mark.parametrize("stress", [0.0, 0.1e6, 1e6])
 def test_its_coefficients_are_the_virtual_work_of_its_mechanism(length, height, stress):
-    """Diagonal cracks rise by G on 1; the deflection is 1 in the middle and plane between cracks."""
+    """Diagonal cracks rise by G on 1; the deflection is 1 in the middle, plane between cracks."""
     G = 2 * HIGH / LENGTH
     across = min(length / 2, height / 2 / G)  # of a diagonal crack
     up = G * across

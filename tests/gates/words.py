@@ -49,6 +49,7 @@ ALLOWED = {
     "lower_left": "the direction",
     "upper_left": "the direction",
     "leftOf": "the direction",
+    "turnsLeft": "the direction",
     "CorrectedLeaveOneOut": "of OpenTURNS",
     "Room": "a room of a house, in masonry.bricks",
     "weak_ptr": "of the C++ library",

@@ -342,6 +342,10 @@ CALLS = {
     "capacity.iterated": (iterated, dict(limited=False, **DEMAND)),
     "capacity.ofMasses": (capacity.ofMasses, dict(masses=[1e3, 2e3], shape=[0.5, 1.0])),
     "capacity.ofRun": (capacity.ofRun, dict(run=dict(answers=MASSES))),
+    "capacity.panelPressure": (
+        capacity.panelPressure,
+        dict(length=4, height=3, unit=(0.24, 0.11, 0.086), flexural=0.2e6, rupture=0.8e6),
+    ),
     "capacity.pushover": (capacity.pushover, dict(directory="run")),
     "capacity.readSpectrum": (
         capacity.readSpectrum,

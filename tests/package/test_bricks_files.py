@@ -274,6 +274,11 @@ def test_what_is_no_convex_solid_is_refused(tmp_path, points, faces, said):
         ("a.stl", "solid a\nvertex 0 0 0", "solid a has no end"),
         ("a.ply", "hello", "does not start with ply"),
         ("a.ply", "ply\n", "its head has no end"),
+        (
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement face 1\nproperty int a\nend_header\n1",
+            "its faces have no vertex_indices",
+        ),
         ("a.json", "{", "cannot be read"),
         ("a.json", "{}", "no mesh"),
         ("a.json", '{"vertex": {"0": {}}, "face": {"0": [0, 1]}}', "vertex 1 that is"),

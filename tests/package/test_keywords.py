@@ -165,7 +165,7 @@ def test_options_of_a_parser_serve_several_scenes():
 
 def test_an_option_of_the_scene_itself_can_be_a_keyword():
     assert made("own", [], level=5).level == 5
-    with raises(Refused, match="no option level; there are accuracy, blocks, "):
+    with raises(Refused, match="no option level; there are accuracy, added_inertia, "):
         made("list", [], level=5)
 
 

@@ -8,13 +8,19 @@ from usual import *
 PLANTS = """
 import importlib.machinery, os, signal, sys
 
-inCompanion = "MASONRY_COMPANION" in os.environ
-
 def fails(*words, **settings):
     raise TypeError("planted")
 
+def failsInCompanion(act):
+    def planted(*words, **settings):
+        isCompanion = sys.modules["masonry.run.accuracy"]._isCompanion
+        return (fails if isCompanion else act)(*words, **settings)
+    return planted
+
 def kills(*words, **settings):
     os.kill(os.getpid(), signal.SIGKILL)
+
+PLANTED = {act.__name__: act for act in (fails, failsInCompanion, kills)}
 
 class Planted(importlib.machinery.PathFinder):
     @classmethod
@@ -25,7 +31,7 @@ class Planted(importlib.machinery.PathFinder):
         load = spec.loader.exec_module
         def loaded(module):
             load(module)
-            names = vars(module) | {"fails": fails, "kills": kills, "inCompanion": inCompanion}
+            names = vars(module) | PLANTED
             exec(os.environ["FAULT"], names)
             vars(module).update(names)
         spec.loader.exec_module = loaded
@@ -59,7 +65,7 @@ ACCURACY = ["--accuracy", "20", "--lean"]
         ("masonry.model.arrays", "beside = fails", "limit analysis", []),
         ("masonry.scene.outcome", "figureOf = fails", "what curve.png shows", []),
         ("masonry_view.curve_figure", "curve = fails", "the figures", []),
-        ("masonry_view.figures", "drawRun = kills", "the figures", []),
+        ("masonry_view.figures", "drawRun = kills", "figures and report", []),
         ("masonry_view.report", "read = kills", "figures and report", []),
         ("masonry_view.report", "page = fails", "the report", []),
         ("masonry.run.frame_writer", "Frames._write = fails", "a frame for ParaView", []),
@@ -72,7 +78,7 @@ ACCURACY = ["--accuracy", "20", "--lean"]
         ("masonry.run.accuracy", "answers = fails", "--accuracy", ACCURACY),
         (
             "masonry.scene.outcome",
-            "if inCompanion: ResultSummary.summarise = fails",
+            "ResultSummary.summarise = failsInCompanion(ResultSummary.summarise)",
             "--accuracy",
             ACCURACY,
         ),

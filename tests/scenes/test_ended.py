@@ -99,7 +99,7 @@ def test_a_drawing_program_that_is_missing(tmp_path, monkeypatch, capsys):
     assert readRun(tmp_path)["peak_base_shear_kN"] > 0
 
 
-@mark.parametrize("steps", [0, 300])
+@mark.parametrize("steps", [0, 150])
 def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 

@@ -194,7 +194,10 @@ def test_studies_vary_ties(tmp_path):
         ),
         (
             '{"wyre.strength": lognormal(500, 0.2)}',
-            "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, wire",
+            (
+                "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, crack,"
+                " wire"
+            ),
         ),
     ],
 )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Processor seconds and steps of whole runs, of one build or of several side by side.
 
-    /usr/bin/python3 validation/benchmark/table.py                     # the plugin that is installed
-    /usr/bin/python3 validation/benchmark/table.py NEW OLD OLDER       # checkouts, plugin beside the sources
+    /usr/bin/python3 validation/benchmark/table.py                 # the plugin that is installed
+    /usr/bin/python3 validation/benchmark/table.py NEW OLD OLDER   # checkouts with their plugin
     /usr/bin/python3 validation/benchmark/table.py NEW OLD --rows house "fast COMP-4"
 
 The builds take turns, and of each the best of ``--repeat`` runs counts. Seconds are those of the
@@ -27,7 +27,8 @@ PYTHON = ["/usr/bin/python3"]
 BENCHMARK = "validation/benchmark/"
 ROWS_OF_A_STUDY = """\
 from {package} import Study, uniform
-study = Study("{scene}", options={options}, runs={runs}, seed=1, jobs=1, vary={{"{name}": uniform(0.6, 0.8)}})
+vary = {{"{name}": uniform(0.6, 0.8)}}
+study = Study("{scene}", options={options}, runs={runs}, seed=1, jobs=1, vary=vary)
 """
 
 

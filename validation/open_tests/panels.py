@@ -49,7 +49,7 @@ def blocksOf(returns):
 
 
 def hold(scene, blocks, returns, edges, stress):
-    """Hold the ends of the returns, or of the wall, and the top, which a beam presses that turns."""
+    """Hold the ends of the returns, or of the wall, and the top, pressed by a beam that turns."""
     for n, block in enumerate(blocks):
         wall, top = block.part == blocks[0].part, block.high[2] > HEIGHT - 1e-6
         if returns:

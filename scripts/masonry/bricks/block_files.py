@@ -301,8 +301,10 @@ def _readPly(path):
         if name == "vertex":
             points = _finite(np.array([[row[axis] for axis in "xyz"] for row in rows], float))
         elif name == "face":
-            listed = next(key for key, types in properties if key.startswith("vertex_ind"))
-            faces = [tuple(map(int, row[listed])) for row in rows]
+            listed = [key for key, _ in properties if key.startswith("vertex_ind")]
+            if not listed:
+                raise ValueError("its faces have no vertex_indices")
+            faces = [tuple(map(int, row[listed[0]])) for row in rows]
     if any(not 0 <= n < len(points) for face in faces for n in face):
         raise ValueError(f"a face has a point that is none of the {len(points)}")
     yield _Surface(_plain(path), points.reshape(-1, 3), faces)

@@ -195,6 +195,10 @@ class DeadLoad:
     held: np.ndarray | None
     bodies: list[int]
 
+    @property
+    def isLift(self):
+        return self.label.endswith(LIFT)
+
 
 def deadLoads(model):
     """Presses, dead loads and wind when they have grown, and drives that hold the structure."""

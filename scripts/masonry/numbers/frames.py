@@ -61,7 +61,7 @@ def readFrame(
 
     :param names: of the arrays that are needed, ``points`` and ``cells`` among them; None: all
     """
-    return _read(_pathOf(directory, kind, number), lambda *file: _frame(*file, names))
+    return _read(_pathOf(directory, kind, number), lambda *file: _frame(names, *file))
 
 
 @validated
@@ -174,7 +174,7 @@ def _opened(root, appended):
     return root[0].find("Piece"), lambda array: _array(array, taken, size)
 
 
-def _frame(root, appended, names):
+def _frame(names, root, appended):
     piece, read = _opened(root, appended)
     data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
     found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}

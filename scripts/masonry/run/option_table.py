@@ -182,7 +182,7 @@ _ROWS = (
         "inertia without a weight that may be added to the few rigid blocks that set the time step,"
         " over that of all blocks, in stages that are not in real time and follow no collapse, if"
         " it makes the step at least 1.3 times as long [-]; 0: none. With the default peak, work"
-        " and bracket changed by 0.2 % at most in three scenes of the gallery"
+        " and bracket changed by 0.2 %% at most in three scenes of the gallery"
     ),
     Option("crack_surfaces", oneOf("on", "off"), default="on").means(
         "whether bricks can crack in half. on: each is two blocks with a crack surface between"
