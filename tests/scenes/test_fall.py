@@ -256,7 +256,9 @@ def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_p
         column = scene.results.column
         braked = max(column("damping_J"))
         assert braked < (1e-3 if stage == "run" else 0.05) * energy
-        assert max(abs(v) for v in column("balance_error")) < 1e-3
+        # in flight, and after impacts of three steps each; a run warns from 1 % on
+        errors, impacts = map(np.abs, (column("balance_error"), column("damping_contacts_J")))
+        assert max(errors[impacts == 0]) < 1e-3 and max(errors) < 1e-2
         kinetic = max(fall["most"] for fall in scene.model.fallen().values())
         assert kinetic == approx(energy - braked, rel=0.01)
         [fall] = scene.model.fallen().values()

@@ -24,7 +24,9 @@ struct KnownEigenvalue {
     }
 };
 
-constexpr double growth = 1.1; // of the time step that follows the state: less is not worth a change
+// Of the time step that follows the state: smaller changes are not worth the energy that they cost in a contact. With
+// the usual share of 0.8 it stays below 0.82 of its limit.
+constexpr double growth = 1.1, excess = 1.02;
 
 // The time step at which a motion of this eigenvalue is on the verge of being unstable [s].
 double stepOf(double eigenvalue, double stiffnessDamping) {
@@ -93,7 +95,7 @@ void followTimeStep(SceneStore& store) {
         const double all = one->largestEigenvalue(store, one->jointEigenvalue, store.damping(), false);
         const double wanted = one->stepShare * stepOf(all, store.stiffnessDamping());
         const double dt = store.scene().dt;
-        if (dt > wanted || growth * dt < wanted) changeTimeStep(store, wanted);
+        if (dt > excess * wanted || growth * dt < wanted) changeTimeStep(store, wanted);
     }
 }
 
