@@ -8,7 +8,7 @@ least is 9 t/h, at ξ = 2/3: 0.343 g. The run cracks there and falls at 0.338 to
 
 ``--four-edges`` holds a panel with bond at its vertical edges, too, with a quarter of the usual
 fracture energies and with all: hinged 12.6 and 19.0 kPa (AS 3700: 13.2), clamped 24.2 and 27.5
-(22.7). It takes some three minutes.
+(22.7). It takes about three minutes.
 """
 
 from masonry import AT_REST, Scene, bricks, materials

@@ -126,7 +126,7 @@ def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
     crack = joints["kind"] == readRun(whole)["kinds"].index("crack")
     friction = np.where(crack, 0.75, 0.43)[mobilised > 0]  # of masonry.materials
     shear = (-normal * mobilised)[mobilised > 0] * friction
-    assert shear == approx(joints["shear_stress"][mobilised > 0], rel=1e-9)
+    assert shear == approx(joints["shear_stress"][mobilised > 0], rel=2**-22)  # as in a file
     assert joints["damage_tension"].max() == 0  # there is no bond
 
 
