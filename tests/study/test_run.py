@@ -14,7 +14,7 @@ SMALL = os.path.join(HERE, "small.py")
 STUDY = f"""
 from masonry_study import Study, field, lognormal
 study = Study({SMALL!r}, runs=4, seed=1,
-    options={{"rate": 5, "until": 1, "checkpoint_every": 0.002}},
+    options={{"rate": 2, "until": 1, "checkpoint_every": 0.002}},
     vary={{"bed.friction": lognormal(mean=0.43, cov=0.05), "joints": ["softening", "cyclic"],
            ("bed.cohesion", "bed.tensileStrength"): field(cov=0.2, length=0.3)}})
 """
