@@ -257,14 +257,14 @@ void Contacts::act(SceneContents& contents, const Vector3r& gravity) {
     });
     const auto sums = contents.scene().forces().sums(all.size());
     impulses_.resize(std::size_t(all.size()), Vector3r::Zero());
-    const auto push = [&](int body, const Vector3r& force, const Vector3r& torque) {
+    const auto add = [&](int body, const Vector3r& force, const Vector3r& torque) {
         sums.forces[body] += force;
         sums.torques[body] += torque;
         if (isHeld(contents, body)) impulses_[std::size_t(body)] += contents.scene().dt * force;
     };
     const auto strike = [&](const Pair& pair, const Wrench& wrench) {
-        push(pair.one, -wrench.force, wrench.torques[0]);
-        push(pair.other, wrench.force, wrench.torques[1]);
+        add(pair.one, -wrench.force, wrench.torques[0]);
+        add(pair.other, wrench.force, wrench.torques[1]);
     };
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         if (effects_[p].acts) strike(pairs_[p], effects_[p].wrench);

@@ -151,7 +151,7 @@ Dynamics::Part Dynamics::partOf(const Spring& spring) const {
     return part;
 }
 
-// Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints and
+// Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints,
 // connectors, testing machines and units.
 template <class F> void Dynamics::eachPart(F&& visit) const {
     const auto visitAll = [&](const Part& part) {
