@@ -123,11 +123,6 @@ void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
 
 py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
 
-void displaceAlongMode(ElasticSolution& solution, double amount) {
-    const StillScene still;
-    solution.displace(amount);
-}
-
 void connected() {
     StillScene()->connected();
     giveMemoryBack();
@@ -215,7 +210,7 @@ static void registerAll() {
              "none.")
         .def("participation", &ElasticSolution::participation,
              "Momentum of the mode along its direction per its velocity [kg^(1/2)].")
-        .def("displace", &displaceAlongMode, py::args("amount"), "Move all along the mode [m kg^(1/2)].")
+        .def("displace", &ElasticSolution::displace, py::args("amount"), "Move all along the mode [m kg^(1/2)].")
         .def("force", &ElasticSolution::force, "Force of the last step along the mode [N/kg^(1/2)].");
     py::def(
         "bodyEigenvalues", &bodyEigenvalues,

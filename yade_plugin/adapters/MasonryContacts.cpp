@@ -28,7 +28,7 @@ std::vector<int> looseIn(const SceneStore& store) {
 void MasonryContacts::lookAtFalls(SceneStore& store) {
     if (!takesJoints) return;
     falls_.watch(store);
-    if (scene->iter % (lookEvery / 2) != 0) return;
+    if (scene->iter % lookAtFallsEvery != 0) return;
     const auto loose = looseIn(store);
     falls_.look(store, loose, sizes(), store.gravity());
     undamp(store, loose);

@@ -62,7 +62,7 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
         visit("following", &C::stepShare,
-              number("-", "Time step over its limit, if it follows the state (follow); 0: it stays"), Shown);
+              number("-", "Time step over its limit while it follows the state (follow); 0: it stays"), Shown);
         visit("memory", &MasonryContacts::visitMemory,
               described("Pairs of blocks that are near each other, and what they remember; blocks that are awake, and "
                         "those that no joints hold any more"));
@@ -82,9 +82,9 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
                  "Impulse of all contacts so far on a body whose axes are all blocked, as the ground [N s], global "
                  "axes. The force of an impact depends on stiffness and time step, and its impulse does not.")
             .def("follow", &MasonryContacts::follow, py::args("share"),
-                 "From now on O.dt is so much of the limit of the time step that the present pairs of blocks allow, "
-                 "and it changes when others are near each other. 0: it stays, and its limit is that of any contacts "
-                 "that may come.")
+                 "From now on O.dt is this share of the limit that the present pairs of blocks allow, and changes "
+                 "when other blocks are near each other. 0: it stays, and its limit is that of any contacts that may "
+                 "come.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
                  "since, when that was [s]; fell, when the block had turned by 60°, or moved by its diameter and come "

@@ -16,7 +16,7 @@ void MasonryLoad::action() {
             throw std::invalid_argument("MasonryLoad.body " + std::to_string(id) +
                                         " is a deformable unit; load a rigid block joined to it");
     });
-    act(*scene, scope->gravity(), [&](int id) { return scope->integrator ? scope->integrator->inertiaFactor(id) : 1; });
+    act(*scene, scope->gravity(), [&](int id) { return scope->inertiaFactor(id); });
     scope.end();
 }
 

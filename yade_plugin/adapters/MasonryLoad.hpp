@@ -46,16 +46,18 @@ public:
               number("N",
                      "Force that the drive, or a testing machine beside the force, applied along the direction in the "
                      "last step; whoever turns the direction turns it, too"));
-        visit("stiffness", &L::stiffness,
-              number("N/m", "With which the load of a testing machine follows the point against the direction")
-                  .atLeast(0));
+        visit(
+            "stiffness", &L::stiffness,
+            number("N/m", "Stiffness with which the load of a testing machine follows the point against the direction")
+                .atLeast(0));
         visit("friction", &L::friction,
               number("-", "Share of this load up to which friction of the machine keeps it back").atLeast(0).below(1));
         visit("guideStiffness", &L::guideStiffness,
-              number("N/m", "Of the guides of the machine until their friction slips").atLeast(0));
+              number("N/m", "Stiffness of the guides of the machine until their friction slips").atLeast(0));
         visit("engaged", &L::engaged, described("Whether stiffness and friction act; they begin without force"));
-        visit("uplift", &L::uplift, number("m", "Of the point against the direction since then"), ReadOnly);
-        visit("slip", &L::slip, number("m", "How much of the uplift the friction has slipped"), ReadOnly);
+        visit("uplift", &L::uplift, number("m", "Displacement of the point against the direction since then"),
+              ReadOnly);
+        visit("slip", &L::slip, number("m", "Part of the uplift by which the friction has slipped"), ReadOnly);
         visit("elastic", &L::stored, number("J", "Elastic energy of machine and guides"), ReadOnly);
         visit("dissipated", &L::dissipated, number("J", "Energy that their friction has dissipated so far"), ReadOnly);
         visit("work", &L::work,

@@ -191,7 +191,7 @@ Vector3r moved(const SceneStore& store, const JointGeometry& geom, int side, int
     throw std::runtime_error("cannot write " + path + ": " + (reason ? std::strerror(reason) : "no reason known"));
 }
 
-// Files are looked at: seven digits are enough.
+// Seven digits are enough for pictures.
 void roundArrays(vtkDataSetAttributes* data) {
     for (int n = 0; n < data->GetNumberOfArrays(); ++n) {
         auto* exact = vtkDoubleArray::SafeDownCast(data->GetArray(n));

@@ -23,8 +23,8 @@ struct ElasticAccount {
     // elsewhere.
     Wrench push;
     double given = 0;  // what the blocks have given to it since the contact began, up to the place of the last step [J]
-    double excess = 0; // elastic energy less the potential, by forces that kept the energy in place of those of it [J]
-    bool kept = false; // whether the force of the last step was such a one
+    double excess = 0; // elastic energy less the potential, in the step after the last force that kept the energy [J]
+    bool kept = false; // whether the force of the last step did so
 
     template <class Visit> void visitState(Visit&& visit) { visit(push, given, excess, kept); }
 };
@@ -39,7 +39,7 @@ struct ContactChange { // of the contact area since the last step
 void countLastPush(const NearBlocks&, double dt, ElasticAccount&);
 
 // The elastic wrench of a step, which keeps the energy where the contact area becomes another one: `elastic` is that of
-// the potential, `dashpot` that of damping in this step.
+// the potential, `dashpot` what damping gives in this step, as far as it is known.
 Wrench keepEnergy(const NearBlocks&, double normalStiffness, double dt, const ContactChange&, const Wrench& elastic,
                   const Wrench& dashpot, OverlapFinder&, ElasticAccount&);
 

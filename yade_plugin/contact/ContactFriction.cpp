@@ -36,8 +36,8 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
     const double lever = leverOfFriction(overlap), limit = friction * normalForce;
     const Vector& normal = overlap.normal;
     FrictionStep step{Vector::Zero(), 0, 0, 0};
-    Vector shear = state.shear, slip = Vector::Zero(),
-           acted = Vector::Zero(); // `acted` in the last step
+    Vector shear = state.shear, slip = Vector::Zero();
+    Vector acted = Vector::Zero(); // force of the last step, in the present direction
     double twist = state.twist, spin = 0;
     const double soft = 0.5 / stiffness; // [m/N] energy over the square of a force
     if (state.stiffness > 0) {
@@ -75,7 +75,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
         shear *= limit / size;
         twist *= limit / size;
     }
-    // What was cut off has still acted in the first half of the way.
+    // The part that was cut off has still acted in the first half of the step.
     if (state.stiffness > 0) step.lost -= 0.5 * ((acted - shear).dot(slip) + (state.twist - twist) * lever * spin);
     const Vector trial = shear - stiffness * slip;
     const double trialTwist = twist - stiffness * lever * spin;

@@ -21,7 +21,7 @@ struct FrictionState {
 struct FrictionStep {
     Eigen::Vector3d force; // on the other block, at the centre of pressure [N]
     double moment;         // on the other block about the normal [N m]
-    // Energy that friction took in this step [J]; below 0 where a force that has fallen since acted on the way back.
+    // Energy that friction took in this step [J]; below 0 where the force has fallen and the blocks move along it.
     double lost;
     double stored; // elastic energy of slip and twist [J]
 };

@@ -42,9 +42,9 @@ double dampingCoefficient(const ContactProperties& law, const NearBlocks& blocks
     return 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
 }
 
-// The wrench of a dashpot [N, N m] that has the mean of the velocities before and after it has acted for a step, of
-// which those before are given. With the power p of the dashpot at these, and what its own impulse gives to it, the
-// kinetic energy falls by dt p / (1 + x) with x = dt response / (2 p): it takes energy at any time step.
+// The wrench of a dashpot [N, N m] at the mean of the velocities before its impulse of a step, which are given, and
+// after it. With its power p at those before, and x = dt response / (2 p), the kinetic energy falls by dt p / (1 + x)²
+// (contact/README.md).
 Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double coefficient,
             double dt) {
     Wrench dashpot;
@@ -95,8 +95,8 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
         account.excess = excess;
         return;
     }
-    // What the dashpot will do is known when all other forces are. Friction has what it would do to the present
-    // velocities, and where the contact area changes, as in an impact, the elastic force counts, too.
+    // The dashpot is known only when all other forces are (dampPair). Friction takes it at the present velocities, and
+    // keepEnergy at those that the elastic force gives, too, as in an impact.
     effect.dampingCoefficient = dampingCoefficient(law, blocks, overlap);
     memory.dashpot = Wrench();
     const auto dashpot = damp(law, blocks, overlap, effect.dampingCoefficient, dt);

@@ -43,9 +43,9 @@ struct ContactEffect { // of a pair in the present step
 RelativePose relativePose(const Eigen::Matrix3d& turn, const Eigen::Vector3d& position,
                           const Eigen::Matrix3d& otherTurn, const Eigen::Vector3d& otherPosition);
 
-// The step of a pair without its dashpot. `overlap` of the effect is what OverlapFinder found for its pose, `touches`
-// its answer, and the overlap counts only then. A pair that does not touch and did not do so in the last step needs no
-// call.
+// The step of a pair without its dashpot. `touches` of the effect is what OverlapFinder answers for its pose, and
+// `overlap`, which counts only then, what it found. A pair that does not touch and did not do so in the last step needs
+// no call.
 void actOnPair(const ContactProperties&, const NearBlocks&, double dt, OverlapFinder&, PairMemory&, ContactEffect&);
 
 // Adds the dashpot of a pair, when all other forces of the step are known. `middle` has the velocities in the middle of

@@ -18,7 +18,7 @@ Polygon outlineOf(const ContactBlock& block, const ContactBlock::Face& face) {
     return found;
 }
 
-// What of a polygon lies below a plane.
+// The part of a polygon below a plane.
 Polygon cut(const Polygon& polygon, const Vector& normal, double offset) {
     Polygon kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -12,7 +12,7 @@ using BlockStiffness = Eigen::Matrix<double, 6, 6>;
 // Adds a spring [N/m] at a point of the block, both in its own axes.
 void addSpring(const Eigen::Vector3d& point, const Eigen::Matrix3d& spring, BlockStiffness&);
 
-// Adds all of the surface of a block, with stiffnesses along the normal and along the face [Pa/m], or what of it lies
+// Adds the whole surface of a block, with stiffnesses along the normal and along the face [Pa/m], or the part of it
 // within a distance [m] of another block in this pose.
 void addSurface(const ContactBlock&, double normalStiffness, double tangentialStiffness, BlockStiffness&);
 void addNearSurface(const ContactBlock&, const ContactBlock& other, const RelativePose&, double distance,

@@ -41,7 +41,7 @@ double powerOf(const NearBlocks&, const Wrench&);
 // What a wrench gives with the velocities that an impulse of another one causes [N²/kg].
 double responseOf(const NearBlocks&, const Wrench&, const Wrench& to);
 
-// Gives a body what a force [N] and a torque about its centre [N m] do to its velocities in a time [s].
+// Changes the velocities of a body as a force [N] and a torque about its centre [N m] do in a time [s].
 void push(ContactBody&, const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double time);
 
 // The mass with which two blocks meet at a point along a normal, both in global axes [kg]; 0 if both are held.

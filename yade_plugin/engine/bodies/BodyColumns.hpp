@@ -10,6 +10,11 @@
 
 namespace masonry {
 
+// The factor of a body, of factors by ids beyond whose end it is 1.
+inline double factorOf(const std::vector<double>& factors, int body) {
+    return body < int(factors.size()) ? factors[body] : 1;
+}
+
 class BodyColumns : public RigidColumns {
 public:
     // Takes all bodies of a scene from the host.
@@ -67,7 +72,7 @@ public:
     void take(int body);
     // Takes the factors on the inertia of bodies, see Integrator.
     void scaleInertia(const std::vector<double>& factors);
-    double inertiaFactor(int body) const { return body < int(factors_.size()) ? factors_[body] : 1; }
+    double inertiaFactor(int body) const { return factorOf(factors_, body); }
     bool isScaled() const { return !factors_.empty(); }
 
     std::vector<double> referencePosition[3]; // [m]

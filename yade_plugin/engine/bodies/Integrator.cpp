@@ -81,7 +81,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     stepChange = 0;
 }
 
-// What the kinetic energy changes by with the inertia of bodies is an input. Velocities stay.
+// Velocities stay, and the change of the kinetic energy counts as external work.
 void Integrator::followInertia(BodyColumns& bodies) {
     bodies.scaleInertia(inertiaFactors);
     if (inertiaFactors == factorsBefore) return;

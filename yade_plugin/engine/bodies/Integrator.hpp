@@ -48,9 +48,6 @@ private:
     // Makes a step of bodies `first` up to, but without, `beyond`.
     Sums advancePiece(const yade::Scene&, BodyColumns&, const Vector3r* forces, const Vector3r* torques, int first,
                       int beyond);
-    static double factorOf(const std::vector<double>& factors, int body) {
-        return body < int(factors.size()) ? factors[body] : 1;
-    }
     void followInertia(BodyColumns&);
     double gainedPower(const BodyColumns&, int body, const Vector3r& force, const Vector3r& torque) const;
     void findWeights(const BodyColumns&, int first, int count, Sums&) const;

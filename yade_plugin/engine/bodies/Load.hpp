@@ -46,10 +46,10 @@ public:
     double pendingWork = 0;  // second half of the last step's work, which the next step adds [J]
 
     // A testing machine, whose load follows how far the point moves against `direction` and is kept back by friction.
-    double stiffness = 0;      // with which the load follows [N/m]
+    double stiffness = 0;      // of the machine, with which the load follows [N/m]
     double friction = 0;       // share of the load up to which friction keeps it back [-]
     double guideStiffness = 0; // of the guides, until this friction slips [N/m]
-    bool engaged = false;      // whether both act; when they begin to, they have no force
+    bool engaged = false;      // whether stiffness and friction act; they begin without force
     double uplift = 0;         // of the point since then, against `direction` [m]
     double slip = 0;           // how much of that the friction has slipped [m]
     double stored = 0;         // elastic energy of machine and guides [J]

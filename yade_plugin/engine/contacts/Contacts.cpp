@@ -200,8 +200,8 @@ void Contacts::actOn(const SceneContents& contents, OverlapFinder& finder, Pair&
               pair.memory, effect);
 }
 
-// The dashpots act last, one pair after the other, on the velocities in the middle of the step. So none of them,
-// whatever the time step, adds to the energy of the step (engine/watch/CriticalTimeStep.hpp).
+// The dashpots act last, one pair after the other, on the velocities in the middle of the step, and so take energy at
+// any time step (engine/watch/CriticalTimeStep.hpp).
 template <class Strike> void Contacts::damp(const SceneContents& contents, const Vector3r& gravity, Strike&& strike) {
     const double dt = contents.scene().dt;
     const auto sums = contents.scene().forces().sums(contents.bodies.size());
@@ -257,14 +257,14 @@ void Contacts::act(SceneContents& contents, const Vector3r& gravity) {
     });
     const auto sums = contents.scene().forces().sums(all.size());
     impulses_.resize(std::size_t(all.size()), Vector3r::Zero());
-    const auto push = [&](int body, const Vector3r& force, const Vector3r& torque) {
+    const auto add = [&](int body, const Vector3r& force, const Vector3r& torque) {
         sums.forces[body] += force;
         sums.torques[body] += torque;
         if (isHeld(contents, body)) impulses_[std::size_t(body)] += contents.scene().dt * force;
     };
     const auto strike = [&](const Pair& pair, const Wrench& wrench) {
-        push(pair.one, -wrench.force, wrench.torques[0]);
-        push(pair.other, wrench.force, wrench.torques[1]);
+        add(pair.one, -wrench.force, wrench.torques[0]);
+        add(pair.other, wrench.force, wrench.torques[1]);
     };
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         if (effects_[p].acts) strike(pairs_[p], effects_[p].wrench);
@@ -432,7 +432,7 @@ double Contacts::elastic(const SceneContents& contents) {
     return sum;
 }
 
-// What every joint between rigid bodies does to both, in their own axes, where they stood when it was made.
+// Finds the stiffness of every joint between rigid bodies against motions of each, where they stood when it was made.
 void Contacts::measureJoints(const SceneContents& contents) {
     shares_.clear();
     for (const auto& joint : contents.joints) {
@@ -454,9 +454,7 @@ void Contacts::measureJoints(const SceneContents& contents) {
     measuredRevision_ = contents.stiffnessRevision();
 }
 
-// Until other pairs are looked for, two blocks come nearer by the skin at most, so what may press of a block is what of
-// its surface lies as near the other one. Of a relative motion both have half, so each counts twice; all of it is the
-// block's own where the other is held.
+// The bounds are derived in contact/README.md.
 void Contacts::boundPairs(const SceneContents& contents, double damping) {
     if (!unbounded_ && damping_ == damping) return;
     damping_ = damping;
@@ -555,13 +553,11 @@ Vector3r Contacts::impulseOn(int body) const {
 void Contacts::visitState(StateNumbers& n) {
     std::vector<int> awake(awake_.begin(), awake_.end());
     effects_.resize(pairs_.size());
-    int unbounded = unbounded_;
-    n(awake, changes_, pairs_, effects_, impulses_, placed_, usedSkin_, unbounded, ofPairs_, ofAll_, damping_,
+    n(awake, changes_, pairs_, effects_, impulses_, placed_, usedSkin_, unbounded_, ofPairs_, ofAll_, damping_,
       jointEigenvalue, stepShare);
     if (!n.back) return;
     if (effects_.size() != pairs_.size()) n.refuse();
     awake_ = {awake.begin(), awake.end()};
-    unbounded_ = unbounded != 0;
     restored_ = true;
     stale_ = placed_.size() != ids_.size();
 }

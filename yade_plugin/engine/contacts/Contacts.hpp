@@ -46,7 +46,8 @@ public:
         Vector3r normal, force;    // from body 1 to body 2; on body 1 [N]
         Vector3r torque1, torque2; // about the centres of both bodies [N m]
     };
-    static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
+    static constexpr int lookEvery = 10;       // steps between two looks at joints and at bodies that wake
+    static constexpr int lookAtFallsEvery = 5; // and at blocks that fall
     // Whether a body is one of the blocks that can touch. It is known from the first step on.
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
     // Sizes of blocks by id; 0 where they cannot touch.
@@ -58,10 +59,11 @@ public:
     Vector3r impulseOn(int body) const;
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
-    // Bound of the largest eigenvalue of stiffness over mass [1/s²] of joints, of which it is given, and contacts, with
-    // masses over 1 + damping where it acts. If the time step follows the state, contacts are those of the pairs that
-    // there were at boundPairs(), until others are looked for; else all that may ever come.
+    // Finds the bounds for the present pairs, if others were looked for since.
     void boundPairs(const SceneContents&, double damping);
+    // Bound of the largest eigenvalue of stiffness over mass [1/s²] of joints, whose own is given, and contacts: those
+    // of boundPairs() if the time step follows the state, else all that may ever come. Damped masses are divided by
+    // 1 + damping.
     double largestEigenvalue(const SceneContents&, double ofJoints, double damping, bool anew);
     double stepShare = 0;       // time step over its limit, if it follows the state [-]; 0: it stays
     double jointEigenvalue = 0; // that of the joints when it began to follow [1/s²]
@@ -146,16 +148,17 @@ private:
     std::vector<Change> changes_;
     double usedSkin_ = 0;
     double dampingRatio_ = 0, ratioOf_ = -1; // dampingRatio(restitution), and for which restitution
-    double embedded_ = 0, boundStiffness_ = -1,
-           boundRatio_ = -1; // of any contacts, and what it was found for
-    long boundRevision_ = -1, measuredRevision_ = -1;
-    // Bounds for the pairs that there are, of contacts alone, and with all joints that were not handed over; and the
-    // constant of numerical damping in them.
+    // Bound for any contacts that may come, and what it was found for.
+    double embedded_ = 0, boundStiffness_ = -1, boundRatio_ = -1;
+    long boundRevision_ = -1;
+    // Bounds for the present pairs, of contacts alone and with all joints that were not handed over; and the constant
+    // of numerical damping in them.
     double ofPairs_ = 0, ofAll_ = 0, damping_ = 0;
     bool unbounded_ = true;              // whether these must be found
+    long measuredRevision_ = -1;         // SceneContents::stiffnessRevision() of `shares_`
     std::vector<JointShare> shares_;     // of all joints between rigid bodies
     std::vector<ContactBody> middle_;    // scratch of damp(): bodies in the middle of the step, by id
-    std::vector<unsigned char> isKnown_; // whether there
+    std::vector<unsigned char> isKnown_; // whether a body is there
     bool restored_ = false;              // whether pairs and places are those of a checkpoint
     bool stale_ = true;                  // whether the pairs must be looked for
     long revision_ = -1;                 // SceneContents::revision() of all that

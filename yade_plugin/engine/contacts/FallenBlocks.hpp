@@ -33,7 +33,7 @@ public:
     // without gravity nothing need come down.
     void look(const SceneContents&, const std::vector<int>& loose, const std::vector<Size>& sizes,
               const yade::Vector3r& gravity);
-    // Keeps the largest kinetic energy of each, in every step.
+    // Keeps the largest kinetic energy of each block that has come loose; to be called in every step.
     void watch(const SceneContents&);
     const std::vector<Fall>& all() const { return all_; } // sorted by body
 

@@ -70,8 +70,8 @@ std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
     const int closest = int(std::min_element(distances.begin(), distances.end()) - distances.begin());
     double smallest = HUGE_VAL;
     std::vector<std::vector<Share>> found;
-    // Whether a stretch or triangle around the place can be small enough that has a side of this length or a corner at
-    // this distance of the place: the squares of a triangle's sides add up to 1.5 times the square of either.
+    // Whether a stretch or triangle around the place with a side of this length, or a corner at this distance from the
+    // place, can be small enough: the squares of a triangle's sides are 1.5 times the square of either in sum, or more.
     const bool row = isRow(points);
     const auto fits = [&](double squared) { return (row ? 1 : 1.5) * squared <= smallest * (1 + 1e-6); };
     const auto take = [&](double size, std::initializer_list<Share> shares) {
@@ -110,7 +110,8 @@ std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
             }
         }
     };
-    // First from the nearest points on, which finds how small; then in their own order, by which weights are summed.
+    // The first search begins with the nearest points and finds the smallest size; the second one takes the points in
+    // their own order, in which weights are summed.
     std::sort(order.begin(), order.end(), [&](int a, int b) { return distances[a] < distances[b]; });
     search();
     std::iota(order.begin(), order.end(), 0);
@@ -451,8 +452,8 @@ void Refinement::readParts(const SceneContents& store) {
     stiffnessRevision_ = store.stiffnessRevision();
 }
 
-// Finds dry joints both blocks of which a third one, or both halves of a brick, hold by their bond, as head joints
-// without bond in a wall with bonded beds: these turn with their beds alone.
+// Finds dry joints whose blocks are both bonded to a third one, or to two that are bonded to each other, as the halves
+// of a brick: head joints without bond turn with bonded beds.
 void Refinement::findBridged(const SceneContents& store) {
     const auto isDry = [](const JointView& joint) {
         const auto& p = joint.phys->group->columns.unsynchronised()->law().properties();

@@ -81,6 +81,8 @@ yade::Vector3r SceneStore::gravity() const {
     return integrator ? integrator->gravity : hostIntegrator ? hostIntegrator->gravity : yade::Vector3r(0, 0, 0);
 }
 
+double SceneStore::inertiaFactor(int body) const { return integrator ? integrator->inertiaFactor(body) : 1; }
+
 double SceneStore::massDamping() const { return integrator ? integrator->massDamping : 0; }
 
 double SceneStore::stiffnessDamping() const { return loop ? loop->stiffnessDamping : 0; }

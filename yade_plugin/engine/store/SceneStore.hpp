@@ -73,10 +73,11 @@ public:
 
     // Ids of the blocks that were added after connect() and have no joint.
     std::vector<int> unjoinedBlocks() const;
-    double damping() const;          // damping constant of the integrator of rigid bodies [-]
-    yade::Vector3r gravity() const;  // of the integrator of rigid bodies [m/s²]
-    double massDamping() const;      // of the integrator of rigid bodies [1/s]
-    double stiffnessDamping() const; // of the joints [s]
+    double damping() const;               // damping constant of the integrator of rigid bodies [-]
+    yade::Vector3r gravity() const;       // of the integrator of rigid bodies [m/s²]
+    double inertiaFactor(int body) const; // of MasonryIntegrator [-]
+    double massDamping() const;           // of the integrator of rigid bodies [1/s]
+    double stiffnessDamping() const;      // of the joints [s]
 
 private:
     explicit SceneStore(yade::Scene&);

@@ -15,7 +15,7 @@ namespace {
 struct KnownEigenvalue {
     long revision = -1;
     double damping = 0, zoneDamping = 0, massScaling = 0;
-    double inertia = 0;    // sum of the factors on it [-]
+    double inertia = 0;    // sum of its factors [-]
     double connectors = 0; // sum of their stiffness, with that of testing machines
     double value = 0;      // [1/s²]
     bool isForSame(const KnownEigenvalue& o) const {
@@ -24,8 +24,8 @@ struct KnownEigenvalue {
     }
 };
 
-// Of the time step that follows the state: smaller changes are not worth the energy that they cost in a contact. With
-// the usual share of 0.8 it stays below 0.82 of its limit.
+// The time step that follows the state changes if it can grow by so much or exceeds its share so far: smaller changes
+// are not worth the energy that they cost in a contact. With the usual share of 0.8 it stays below 0.82 of its limit.
 constexpr double growth = 1.1, excess = 1.02;
 
 // The time step at which a motion of this eigenvalue is on the verge of being unstable [s].
@@ -87,7 +87,7 @@ void beginFollowing(SceneStore& store) {
     }
 }
 
-// New pairs are near each other, or press as their joint did, so the step that found them was not too long.
+// The step that found new pairs was not too long: they press as their joint did, or not yet.
 void followTimeStep(SceneStore& store) {
     for (auto* one : store.contacts) {
         if (!(one->stepShare > 0)) continue;

@@ -46,8 +46,9 @@ class SceneStore;
 // Without it the value may be lower than the limit, but it is below the scene's time step only if the limit is, too.
 double timeStepLimit(SceneStore&, bool anew);
 
-// Lets the time step follow the state from now on, and does so at the beginning of a step (Contacts::stepShare).
+// Chooses the first time step that follows the state (Contacts::stepShare).
 void beginFollowing(SceneStore&);
+// Chooses the time step anew at the beginning of a step, if it follows the state.
 void followTimeStep(SceneStore&);
 
 // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Dynamics.hpp"
 #include "engine/bodies/BodyCheck.hpp"
-#include "engine/bodies/Integrator.hpp"
 #include "engine/bodies/Load.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "motion/LargestEigenvalue.hpp"
@@ -54,7 +53,7 @@ void Dynamics::addBody(int id, const char* holder) {
     if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) return;
     if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
     const State& s = *body.state;
-    const double factor = store_.integrator ? store_.integrator->inertiaFactor(id) : 1;
+    const double factor = store_.inertiaFactor(id);
     for (int d = 0; d < 6; ++d)
         addDegree(factor * (d < 3 ? s.mass : s.inertia[d - 3]), s.isDamped ? store_.damping() : 0, isBlocked(s, d));
 }
@@ -152,7 +151,7 @@ Dynamics::Part Dynamics::partOf(const Spring& spring) const {
     return part;
 }
 
-// Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints and
+// Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints,
 // connectors, testing machines and units.
 template <class F> void Dynamics::eachPart(F&& visit) const {
     const auto visitAll = [&](const Part& part) {

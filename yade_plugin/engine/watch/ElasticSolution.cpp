@@ -142,7 +142,7 @@ ElasticSolution::Vector ElasticSolution::imbalance() const {
     return ordered(all.cwiseProduct(scale_));
 }
 
-// How the point that a drive holds moves with what can move, likewise.
+// The derivative of the motion of a driven point by what can move, times its scale.
 ElasticSolution::Vector ElasticSolution::alongDrive(const Load& load) const {
     Vector all = Vector::Zero(scale_.size());
     const Vector3r along = load.direction.normalized();
@@ -158,7 +158,7 @@ ElasticSolution::Vector ElasticSolution::alongDrive(const Load& load) const {
     return ordered(all.cwiseProduct(scale_));
 }
 
-// The motion under forces, times and divided by the scale, while drives hold.
+// The motion, divided by the scale, under forces, which are multiplied by it, while drives hold.
 ElasticSolution::Vector ElasticSolution::motionUnder(const Vector& forces) const {
     Vector moved = factors_.solve(forces);
     std::vector<Vector> held;
@@ -175,7 +175,7 @@ ElasticSolution::Vector ElasticSolution::motionUnder(const Vector& forces) const
 double ElasticSolution::move() {
     const StillScene still;
     const Vector forces = imbalance();
-    const Vector moved = motionUnder(forces), all = spread(moved).cwiseProduct(scale_);
+    const Vector moved = motionUnder(forces), all = displacements(moved);
     const double work = forces.dot(moved);
     struct Motion {
         Vector3r vel = Vector3r::Zero(), angVel = Vector3r::Zero();
@@ -191,12 +191,21 @@ double ElasticSolution::move() {
     }
     scene_.integrator->damped += 0.5 * work - grown;
     first_ = false;
-    displace(moved);
+    moveBy(all);
     return std::sqrt(std::max(0.0, work));
 }
 
-void ElasticSolution::displace(const Vector& moved) {
-    const Vector all = spread(moved).cwiseProduct(scale_);
+void ElasticSolution::displace(double amount) {
+    const StillScene still;
+    moveBy(displacements(amount * mode_));
+}
+
+// Of all degrees of freedom [m, rad].
+ElasticSolution::Vector ElasticSolution::displacements(const Vector& moved) const {
+    return spread(moved).cwiseProduct(scale_);
+}
+
+void ElasticSolution::moveBy(const Vector& all) {
     if (auto* zones = scene_.zones) {
         auto displacements = zones->displacements();
         for (std::size_t n = 0; n < displacements.size(); ++n)
@@ -213,15 +222,15 @@ void ElasticSolution::displace(const Vector& moved) {
     }
 }
 
-// The masses of the scene times a motion; the scale stands for those that are not scaled.
+// The scaled masses times a motion, divided by the scale as in motionUnder().
 ElasticSolution::Vector ElasticSolution::inertia(const Vector& motion) const {
     Vector all = spread(motion);
     dynamics_.scaleMasses(all);
     return ordered(all);
 }
 
-// By the method of Lanczos: with the flexibility, from the displacements under a uniform acceleration on. Let c be the
-// share of a mode in the mass and w its angular frequency; these displacements have c/w⁴ of it, and the momentum c/w.
+// The method of Lanczos with the flexibility begins with the displacements under a uniform acceleration. Of a mode with
+// the share c of the mass and the angular frequency w they have the share c/w⁴, and its momentum is c/w.
 double ElasticSolution::findMode(const Vector3r& direction) {
     constexpr int most = 60;
     constexpr double exact = 3e-5; // of a vector; the eigenvalue has the square of this error
@@ -253,7 +262,7 @@ double ElasticSolution::findMode(const Vector3r& direction) {
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved;
         solved.computeFromTridiagonal(Eigen::Map<Vector>(diagonal.data(), count),
                                       Eigen::Map<Vector>(beside.data(), count - 1));
-        const auto momentum = [&](int i) { // 0 of round-off
+        const auto momentum = [&](int i) { // 0 where the flexibility is round-off
             const double flexibility = solved.eigenvalues()[i], share = solved.eigenvectors()(0, i);
             return flexibility > 0 ? share * share * std::pow(flexibility, -1.5) : 0;
         };

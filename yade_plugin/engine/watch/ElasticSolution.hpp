@@ -16,23 +16,23 @@ public:
     // step must have been so short that nothing has moved since. Returns the square root of what the forces that were
     // not in equilibrium do in this motion [J^(1/2)]. A second move corrects what was not linear in the first.
     //
-    // Half of that work counts as taken by damping. Loads grow in the first move, so theirs is half of what they do.
+    // Half of that work counts as taken by damping. In the first move loads grow, and do the other half only.
     double move();
 
     // Finds the first mode along a direction, while drives hold: that which a sudden uniform acceleration gives most
-    // momentum. Returns the square of its angular frequency [1/s²], with which the displacements of a mode have masses
-    // of 1 in sum.
+    // momentum. Its modal mass is 1. Returns the square of its angular frequency [1/s²], 0 if there is none.
     double findMode(const Vector3r& direction);
     // Momentum of the mode along that direction per its velocity [kg^(1/2)].
     double participation() const { return participation_; }
     // Moves all along the mode [m kg^(1/2)], without work.
-    void displace(double amount) { displace(amount * mode_); }
+    void displace(double amount);
     // Force of the last step along the mode, in whose direction it does work [N/kg^(1/2)].
     double force() const;
 
 private:
     using Vector = Eigen::VectorXd;
-    void displace(const Vector& moved);
+    Vector displacements(const Vector& moved) const;
+    void moveBy(const Vector& displacements);
     Vector ordered(const Vector& all) const;
     Vector spread(const Vector& ordered) const;
     Vector imbalance() const;

@@ -31,7 +31,7 @@ double energyOfChanges(const SceneStore& store) {
 }
 
 // Work from outside, energy stored and energy dissipated in ties, springs and testing machines [J]. The work of a load
-// counts what its machine has taken, which came from outside.
+// is without what its machine has taken up, which came from outside, too.
 Vector3r energiesOfConnectors(const SceneStore& store) {
     Vector3r sums = Vector3r::Zero();
     for (const auto* connectors : store.allConnectors)
@@ -236,7 +236,7 @@ double motionOf(SceneStore& store) {
         if (!body || !body->state || (zones && zones->unitOf(body->id))) continue;
         const State& s = *body->state;
         const Vector3r spin = rotationRestrained(s) ? s.angVel : Vector3r(s.ori.conjugate() * s.angVel);
-        const double factor = store.integrator ? store.integrator->inertiaFactor(int(body->id)) : 1;
+        const double factor = store.inertiaFactor(int(body->id));
         for (int i = 0; i < 3; ++i) {
             if (!isBlocked(s, i)) twice += factor * s.mass * s.vel[i] * s.vel[i];
             if (!isBlocked(s, 3 + i)) twice += factor * s.inertia[i] * spin[i] * spin[i];
