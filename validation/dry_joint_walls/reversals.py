@@ -12,8 +12,8 @@ reversals.png. What is looked at:
 - a *reversal*: a turning point of the displacement at 5 mm or more, before and after which the wall
   moves by 2.5 mm and more; the force after it is that as the wall goes back, less that at the
   turning point, both positive towards the side of the turning point
-- the *half height* of a loop, W / (4 A N): W the work of a cycle, A its half amplitude, N the
-  vertical force at the base. It is half the distance of both branches in the mean, over N
+- the *half height* of a loop, W / (4 A N): W the work of a cycle, A its amplitude, N the vertical
+  force at the base. It is half the distance of both branches in the mean, over N
 """
 
 import argparse
@@ -37,7 +37,7 @@ import studies  # noqa: E402
 
 FARTHEST, SWING = 5.0, 2.5  # [mm] least displacement of a reversal, and least swing beside it
 BACK = np.array([0.25, 0.5, 1.0, 1.5, 2.0])  # [mm] where the force is looked at
-CYCLE = 5.0  # [mm] least half amplitude of a loop whose height is looked at
+CYCLE = 5.0  # [mm] least amplitude of a loop whose height is looked at
 RATE = 40  # [mm/s]
 MACHINE = dict(friction=0.05, uplift=1.4)
 #: Of each run the wall, the law of its joints, and the press.
