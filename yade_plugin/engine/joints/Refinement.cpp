@@ -252,6 +252,17 @@ private:
     Eigen::MatrixXd field_;
 };
 
+// Extent of a joint along one of its axes [m].
+double ownExtentOf(const JointReference& r, int axis) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const auto& corner : r.polygon()) {
+        const double place = r.axes().col(axis).dot(corner);
+        low = std::min(low, place);
+        high = std::max(high, place);
+    }
+    return high - low;
+}
+
 } // namespace
 
 // ---- where ------------------------------------------------------------------------------------------------------
@@ -358,13 +369,18 @@ PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& k
     }
     const bool turned = !limit.row() && across > along;
     const auto& r = shapes.joints[j];
-    const double height = extentOf(r, 0), width = widthOf(store, r, turned ? 2 : 1);
-    const double closure = -force / area / k; // mean [m]
-    const bool leans = closure * height * height >= leastLean * r.span()[0] * width * width;
-    if (!limit.opened().along || (!points_ && !leans)) {
-        const int few = limit.row() ? fewest : fewest * fewest;
+    const double height = extentOf(r, 0), closure = -force / area / k; // mean closure [m]
+    const int axis = turned ? 2 : 1, few = limit.row() ? fewest : fewest * fewest;
+    const bool isEstimated = limit.dry() && shapes.points <= few;
+    const auto leansOver = [&](double width) {
+        return closure * height * height >= leastLean * r.span()[0] * width * width;
+    };
+    // The section is at least as wide as the joint, and its width takes a search among all joints.
+    if (!points_ && !isEstimated && !leansOver(ownExtentOf(r, axis))) return {};
+    const double width = widthOf(store, r, axis);
+    if (!limit.opened().along || (!points_ && !leansOver(width))) {
         auto& estimate = store.loop->overestimate;
-        if (limit.dry() && shapes.points <= few)
+        if (isEstimated)
             estimate = std::max(estimate, 1.8 * std::cbrt(closure * (height + r.span()[0]) / (width * width)));
         return {};
     }
