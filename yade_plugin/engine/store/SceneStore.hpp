@@ -75,7 +75,7 @@ public:
     std::vector<int> unjoinedBlocks() const;
     double damping() const;               // damping constant of the integrator of rigid bodies [-]
     yade::Vector3r gravity() const;       // of the integrator of rigid bodies [m/s²]
-    double inertiaFactor(int body) const; // of MasonryIntegrator [-]
+    double inertiaFactor(int body) const; // on the inertia of a body, by the integrator [-]
     double massDamping() const;           // of the integrator of rigid bodies [1/s]
     double stiffnessDamping() const;      // of the joints [s]
 
