@@ -85,6 +85,21 @@ def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over():
     assert contacts.handed == 0
 
 
+def test_a_bond_that_is_left_at_the_edge_a_block_turns_about_does_not_hold_it():
+    """The points there stay closed, so their bond outlives all others. Before 5° it counts."""
+    brittle = lambda: dry(
+        tensileStrength=1e3, cohesion=1e5, modeIFractureEnergy=0.1, modeIIFractureEnergy=1e6
+    )
+    contacts = standing(joint=brittle)
+    s = O.bodies[1].state
+    while contacts.handed == 0:
+        run(10)
+        assert s.rot().norm() < math.radians(5.5)
+    assert s.rot().norm() > math.radians(5)
+    until(1.0)
+    assert s.rot().norm() > math.radians(45) and imbalance() < 0.02
+
+
 @mark.parametrize("axis", [0, 1], ids="xy")
 def test_a_joint_slides_out_of_its_place_along_either_side(axis):
     """Handed over at 2 % of its length: without that the run would end where the block has left the

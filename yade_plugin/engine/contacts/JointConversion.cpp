@@ -42,21 +42,24 @@ bool JointConversion::isDue(const SceneContents& store, const JointView& joint, 
     if (!shapes.pointwise[j] && size.bonded) return false; // it has always been elastic
     const auto& columns = *joint.phys->group->columns.unsynchronised();
     double least = HUGE_VAL, along = 0, across = 0;
-    bool bond = false;
+    bool bond = false, openBond = false;
     for (int p = 0; p < shapes.points; ++p) {
         const Vector3r jump = shapes.pointwise[j] ? Vector3r(joint.geom->jump(p)) : shapes.intactJumpAt(p, j);
         least = std::min(least, jump[0]);
         along += jump[1];
         across += jump[2];
-        bond = bond || (size.bonded && *columns.column(Role::BondDamage, p, j) < bondGone);
+        const bool bondHere = size.bonded && *columns.column(Role::BondDamage, p, j) < bondGone;
+        bond = bond || bondHere;
+        openBond = openBond || (bondHere && jump[0] > 0);
     }
     if (!std::isfinite(least + along + across)) return false; // other checks say that
     if (least > opening * std::max(size.along, size.across)) return true;
-    if (bond) return false;
-    const double n = shapes.points;
-    if (std::abs(along) / n > slide * size.along || std::abs(across) / n > slide * size.across) return true;
+    if (openBond) return false;
     const double w = std::abs(
         (store.bodies.turnOf(r.sides[0].body).conjugate() * store.bodies.turnOf(r.sides[1].body) * size.back).w());
+    if (bond) return w < std::cos(0.5 * hingeTurn);
+    const double n = shapes.points;
+    if (std::abs(along) / n > slide * size.along || std::abs(across) / n > slide * size.across) return true;
     return w < std::cos(0.5 * turn);
 }
 

@@ -14,6 +14,9 @@ public:
     static constexpr double slide = 0.02; // mean slide over the size of the joint in that direction [-]
     // Rotation of both blocks against each other since the reference state: 1° [rad].
     static constexpr double turn = 0.017453292519943295;
+    // Rotation from which on the bond of closed points does not count, which are the edge that the block turns about:
+    // 5° [rad]. There the lever arms of the reference state are off by 0.4 %.
+    static constexpr double hingeTurn = 0.08726646259971647;
     static constexpr double opening =
         0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
 
