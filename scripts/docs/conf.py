@@ -56,6 +56,7 @@ html_show_sourcelink = False
 html_copy_source = False
 if tags.has("paper"):  # noqa: F821, Sphinx knows it
     html_theme = "basic"
+    html_assets_policy = "always"  # the one page has the equations of all others
     html_css_files = ["print.css"]
     html_sidebars = {}
 else:

@@ -11,6 +11,7 @@ import urllib.parse
 DOCS = os.path.join(ROOT, "scripts", "docs")
 sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
 
+import browser
 import validators
 import notebooks
 import staging
@@ -133,6 +134,19 @@ def test_no_page_shows_functions_where_types_and_values_stand(pages):
     found = [name for name, page in pages.items() if re.search("<function|<locals>", page.text)]
     assert found == []
     assert "Annotated" not in pages["commands.html"].text
+
+
+@needsSite
+@mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
+@mark.parametrize("words", ["infill", "buckling", "arch bridge", "earthquake", "retaining wall"])
+def test_the_search_finds_the_table_of_tasks(site, chromium, words):
+    chromium.open(f"{site}/search.html")
+    chromium.value(f"new Promise(done => {{ Search.performSearch({json.dumps(words)}); done(0) }})")
+    found = "[...document.querySelectorAll('#search-results li a')].map(link => link.innerText)"
+    ends = time.monotonic() + browser.PATIENCE
+    while "Which command for which task" not in chromium.value(found):
+        assert time.monotonic() < ends, chromium.value(found)
+        time.sleep(0.1)
 
 
 @needsSite
