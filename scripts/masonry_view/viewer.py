@@ -139,7 +139,7 @@ def inParaView(directory: FilePath, at: Any, magnification: float | None) -> Non
         elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
         if isDebian:
             elsewhere["PYTHONPATH"] = found[0]
-        # without the user's settings there is no dialog of welcome, behind which the macro would wait
+        # without the user's settings no dialog of welcome stands before the macro
         words = [path, "--disable-registry", "--script=" + macro]
         subprocess.run(words, env={**elsewhere, "MASONRY_VIEW": viewFile})
 
