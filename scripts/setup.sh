@@ -79,15 +79,26 @@ fi
 
 [[ "${1:-}" != --no-build ]] || exit 0
 
+# Unpacks a package into a folder, without installing it or what it would bring or remove.
+unpack() {
+    (cd "$logs" && apt-get download "$1" && dpkg -x "$1"_*.deb unpacked) >"$logs/unpack.log" 2>&1 || {
+        tail -n 20 "$logs/unpack.log" >&2
+        echo "$3" >&2
+        exit 100
+    }
+    mkdir -p "$(dirname "$2")" && rm -rf "$2" && mv "$logs/unpacked" "$2"
+}
+
 # Of libvtk9-dev only the headers are needed. They are unpacked, for installed it would bring 250 packages with it.
 if ! compgen -G '/usr/include/vtk-9.*/vtkXMLUnstructuredGridWriter.h' >/dev/null &&
     ! compgen -G 'build/vtk/usr/include/vtk-9.*/vtkXMLUnstructuredGridWriter.h' >/dev/null; then
-    (cd "$logs" && apt-get download libvtk9-dev && dpkg -x libvtk9-dev_*.deb vtk) >"$logs/vtk.log" 2>&1 || {
-        tail -n 20 "$logs/vtk.log" >&2
-        echo "The headers of VTK could not be fetched. As root: apt-get install --no-install-recommends libvtk9-dev" >&2
-        exit 100
-    }
-    mkdir -p build && rm -rf build/vtk && mv "$logs/vtk" build/vtk
+    unpack libvtk9-dev build/vtk \
+        "The headers of VTK could not be fetched. As root: apt-get install --no-install-recommends libvtk9-dev"
+fi
+# Installed, ParaView's Python would remove python3-vtk9.
+paraview=~/.local/share/masonry/paraview # where view.py looks for it
+if [[ " ${packages[*]} " == *" paraview "* && ! -d $paraview && ! -d /usr/lib/python3/dist-packages/paraview ]]; then
+    unpack python3-paraview "$paraview" "ParaView's Python could not be fetched."
 fi
 
 # Without root the package goes to the user's own folder, which plain yade searches too.

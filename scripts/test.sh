@@ -4,7 +4,7 @@
 #
 #   bash scripts/test.sh                   all tests but the long ones
 #   bash scripts/test.sh long              the long ones: the longest of each ring, the site of the documentation, the pages in a
-#                                          browser, fuzz, and sanitizers, for which the plugin is built twice more
+#                                          browser, runs in ParaView, fuzz, and sanitizers, for which the plugin is built twice more
 #   bash scripts/test.sh all               both
 #   bash scripts/test.sh quick             C++ of each layer, the gates, and the fast part of the host: under a minute
 #   bash scripts/test.sh tests/law ...     these tests alone, one after the other; all arguments go to pytest
@@ -19,8 +19,8 @@ long=(clang libclang-rt-dev python3-sphinx python3-myst-parser furo libjs-mathja
 case "${1:-}" in
     quick) tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host tests/limit tests/capacity -m "not slow" "${@:2}") ;;
     "") tests=(tests -m "not long") packages+=("${whole[@]}") ;;
-    long) tests=(tests -m long) packages+=("${whole[@]}" "${long[@]}" chromium) ;;
-    all) tests=(tests) packages+=("${whole[@]}" "${long[@]}" chromium) ;;
+    long) tests=(tests -m long) packages+=("${whole[@]}" "${long[@]}" chromium paraview) ;;
+    all) tests=(tests) packages+=("${whole[@]}" "${long[@]}" chromium paraview) ;;
     *) tests=("$@") workers=0 packages+=("${whole[@]}" "${long[@]}") ;;
 esac
 bash scripts/setup.sh --tests "${packages[@]}"

@@ -57,7 +57,10 @@ SECTIONS = {
     ).split(),
     "Validation": ["validation/README"],
     "Reference": ["api/masonry", "classes"],
-    "Project": "yade_plugin/README yade_plugin/host/README CONTRIBUTING CHANGELOG cite".split(),
+    "Project": (
+        "yade_plugin/README yade_plugin/host/README scripts/OTHER_PROGRAMS CONTRIBUTING CHANGELOG"
+        " cite"
+    ).split(),
 }
 #: Pages that :func:`stage` makes; all others are Markdown files of the repository.
 GENERATED = {"gallery", "commands", "options", "api/masonry", "classes", "cite"}

@@ -130,6 +130,8 @@ def literally(name, raw, text, line, inliner, options=None, content=()):
 
 
 def setup(app):
+    if tags.has("paper"):  # noqa: F821, Sphinx knows it
+        app.set_html_assets_policy("always")  # the one page has the equations of all others
     app.add_role("ydefault", literally)
     app.add_autodocumenter(ConstantDocumenter, override=True)
     app.connect("autodoc-process-docstring", typesFromChecks)

@@ -25,7 +25,7 @@ class Line:
 
         done = min(max(fraction, 0.0), 1.0)
         bar = f'<progress max="1" value="{done:.3f}"></progress> {html.escape(text)}'
-        page = f'<div style="font-family:monospace;white-space:pre">{bar}</div>'
+        page = f'<div style="font-family:monospace;white-space:pre-wrap">{bar}</div>'
         data = {"text/plain": text, "text/html": page}
         if self._handle:
             self._handle.update(data, raw=True)

@@ -78,11 +78,9 @@ def build(view, run):
             ):
                 thing.Position = nearer
                 if name == "open joints":
-                    pv.ColorBy(thing, ("CELLS", "opening [mm]"))
-                    thing.LookupTable = ramp
+                    thing.ColorArrayName, thing.LookupTable = ["CELLS", "opening [mm]"], ramp
     if os.path.exists(os.path.join(run["folder"], "connectors.pvd")):
         drawn(moved(run, "connectors"), view, colours["mortar"], 4).Position = nearer
-    # drawing has set the range of colours to that of the frame
     ramp.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]
     bar = pv.GetScalarBar(ramp, view)
     bar.Title, bar.ComponentTitle, bar.Visibility = "opening [mm]", "", 1

@@ -24,6 +24,8 @@ from .model import GROUND, OPEN, PLATEN, Model
 
 #: Where python3-paraview can be unpacked, since it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
+DEBIAN = "usr/lib/python3/dist-packages"  # where Debian's packages have Python
+MODULES = os.path.join(UNPACKED, DEBIAN)
 SIZE = 1500, 1000  # of ParaView's view [pixels]
 
 MISSING = f"""ParaView is not there. As root:
@@ -124,19 +126,22 @@ def inParaView(directory: FilePath, at: Any, magnification: float | None) -> Non
     """
     scene = sceneOf(directory, frameNear(directory, at), magnification)
     path = shutil.which("paraview")
-    if not path:
+    isDebian = path and os.path.realpath(path) == "/usr/bin/paraview"  # others bring their Python
+    found = [place for place in (MODULES, "/" + DEBIAN) if os.path.isdir(place + "/paraview")]
+    if not path or isDebian and not found:
         raise Refused(MISSING)
     macro = os.path.join(os.path.dirname(__file__), "paraview_macro.py")
-    modules = os.path.join(UNPACKED, "usr", "lib", "python3", "dist-packages")
     with tempfile.TemporaryDirectory() as folder:
         viewFile = os.path.join(folder, "view.json")
         with open(viewFile, "w") as file:
             json.dump(scene, file)
         # PYTHONPATH and PYTHONHOME are of another Python
         elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
-        if os.path.isdir(modules):
-            elsewhere["PYTHONPATH"] = modules
-        subprocess.run([path, "--script=" + macro], env={**elsewhere, "MASONRY_VIEW": viewFile})
+        if isDebian:
+            elsewhere["PYTHONPATH"] = found[0]
+        # without the user's settings no dialog of welcome stands before the macro
+        words = [path, "--disable-registry", "--script=" + macro]
+        subprocess.run(words, env={**elsewhere, "MASONRY_VIEW": viewFile})
 
 
 @program

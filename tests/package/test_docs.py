@@ -11,6 +11,7 @@ import urllib.parse
 DOCS = os.path.join(ROOT, "scripts", "docs")
 sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
 
+import browser
 import validators
 import notebooks
 import staging
@@ -25,6 +26,7 @@ MISSING = [p for m, p in NEEDS.items() if importlib.util.find_spec(m) is None]
 if not os.path.isdir("/usr/share/javascript/mathjax"):
     MISSING.append("libjs-mathjax")
 needsSite = mark.skipif(MISSING != [], reason=f"not installed: {MISSING}")
+needsBrowser = mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
 
 
 class SitePage(Page):
@@ -47,8 +49,8 @@ def site(tmp_path_factory):
         return pathlib.Path(os.environ["MASONRY_SITE"])
     out = tmp_path_factory.mktemp("docs")
     program = ["/usr/bin/python3", os.path.join(DOCS, "build.py")]
-    command = [*program, "--out", str(out), "--no-pdf", "--no-run"]
-    run = ran(command, timeout=600)
+    command = [*program, "--out", str(out), "--no-run", *["--no-pdf"] * bool(browser.MISSING)]
+    run = ran(command, timeout=900)
     assert run.returncode == 0, run.stdout + run.stderr
     assert "WARNING" not in run.stdout + run.stderr
     return out / "html"
@@ -136,6 +138,19 @@ def test_no_page_shows_functions_where_types_and_values_stand(pages):
 
 
 @needsSite
+@needsBrowser
+@mark.parametrize("words", ["infill", "buckling", "arch bridge", "earthquake", "retaining wall"])
+def test_the_search_finds_the_table_of_tasks(site, chromium, words):
+    chromium.open(f"{site}/search.html")
+    chromium.value(f"new Promise(done => {{ Search.performSearch({json.dumps(words)}); done(0) }})")
+    found = "[...document.querySelectorAll('#search-results li a')].map(link => link.innerText)"
+    ends = time.monotonic() + browser.PATIENCE
+    while "Which command for which task" not in chromium.value(found):
+        assert time.monotonic() < ends, chromium.value(found)
+        time.sleep(0.1)
+
+
+@needsSite
 def test_classes_options_and_gallery_are_those_of_the_code(pages):
     import masonry
     from masonry.scene import options
@@ -159,6 +174,20 @@ def test_laws_have_their_equations_as_mathematics(pages):
     assert any("MathJax.js" in one for one in paper.loads())
     cyclic = pages["yade_plugin/law/cyclic_softening/README.html"]
     assert cyclic.text.count(r"\[") >= 6
+
+
+@needsSite
+@needsBrowser
+def test_the_pdf_has_its_equations_and_nothing_wider_than_its_paper(site, chromium):
+    """What is wider makes Chromium print all pages smaller."""
+    assert (site.parent / "masonry.pdf").stat().st_size > 1e6
+    chromium.open(site.parent / "paper" / "index.html", width=658)  # 174 mm
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    chromium.value("new Promise(done => MathJax.Hub.Queue(() => done(0)))")
+    assert chromium.value("document.querySelectorAll('.MathJax_SVG').length") > 20
+    wide = chromium.value("document.documentElement.scrollWidth")
+    chromium.call("Emulation.setEmulatedMedia", media="")
+    assert wide <= 662
 
 
 FLAGS = arguments.listOf(arguments.flag)
