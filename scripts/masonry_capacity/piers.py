@@ -8,10 +8,10 @@ run found in them.
 of the run if they are not given: means without safety factors, with a confidence factor of 1.
 Clauses are cited from memory.
 
-A spandrel is a pier that lies: its axial force is the horizontal one of the run (NTC 2018,
-7.8.2.2.4; EN 1998-3 has no rule of its own), and without compression it has no strength. With the
+A spandrel is checked as a pier on its side, whose axial force is the horizontal one of the run (NTC
+2018, 7.8.2.2.4; EN 1998-3 has no rule of its own): without compression it has no strength. With the
 tensile strength of a lintel, beam or tie NTC has strengths without that force (:func:`coupling`).
-Neither says how far it may turn.
+How far it turns is not checked.
 """
 
 import argparse
@@ -148,8 +148,7 @@ def stepped(pier: Pier, cohesion: float) -> float:
 
 def coupling(spandrel: Pier, tie: float) -> dict:
     """Strengths [N] of a spandrel whose tension a lintel, beam or tie takes, up to ``tie`` [N]: NTC
-    2018, (7.8.4) to (7.8.6). Its ``length`` is its depth, its ``height`` that of a pier that
-    lies."""
+    2018, (7.8.4) to (7.8.6). Its ``length`` is its depth, its ``height`` the way between piers."""
     whole = spandrel.strength * spandrel.area
     push = min(tie, 0.4 * whole)
     moment = push * spandrel.length / 2 * (1 - push / (0.85 * whole))
@@ -231,7 +230,7 @@ def predicted(code: str, one: Pier, isPier: bool, tie: float | None) -> tuple[Pr
     return found if isPier else replace(found, drift=None), clause
 
 
-def failureOf(frame: dict, low: Sequence[float], high: Sequence[float], axis: int) -> str:
+def failureOf(frame: dict, low: np.ndarray, high: np.ndarray, axis: int) -> str:
     """How a pier (axis 2) or spandrel (0 or 1) gives way, by the joints in its box: a
     ``failure_mode``, or "none" where no joint is open or slid by more than 0.05 mm.
 
@@ -246,8 +245,7 @@ def failureOf(frame: dict, low: Sequence[float], high: Sequence[float], axis: in
     middles = np.transpose([mean(centres[:, i]) for i in range(3)])
     slid = mean(np.linalg.norm(frame["slide"], axis=1))
     opened = mean(frame["opening"])
-    near = (middles > np.array(low) - 1e-6) & (middles < np.array(high) + 1e-6)
-    inside = near.all(axis=1)
+    inside = np.all((middles > low - 1e-6) & (middles < high + 1e-6), axis=1)
     across = inside & (np.abs(frame["normal"][first, axis]) > LEANS)
     widths = {
         "rocking": opened[across].max(initial=0.0),
@@ -261,7 +259,7 @@ def failureOf(frame: dict, low: Sequence[float], high: Sequence[float], axis: in
     cracked = widths[mode] > cracks.CRACK
     if cracked and mode != "rocking":
         return mode
-    size = np.subtract(high, low)
+    size = high - low
     past = mean(frame["damage_compression"] > 0)[across] @ whole[across]
     if past > CRUSHED_SHARE * np.prod(size) / size[axis]:
         return "toe crushing"
@@ -331,7 +329,7 @@ def check(
         of = (height, length, thickness, span, 1e3 * force, strength, fb, tau0 or 0.0, fv0, slope)
         pier = Pier(*of)
         part = 3 * (length / 2 - span * pushed / force) if force > 0 else 0.0
-        moved = 0.1 * float(np.max(np.abs(values(one["drift"])))) if isPier else ""
+        moved = 0.1 * float(np.max(np.abs(values(one["drift"])))) if isPier else 0.0
         own = mode
         if frame and not (isPier and mode):
             own = failureOf(frame, low, high, 2 if isPier else along)
@@ -355,7 +353,7 @@ def check(
                     "clause": clause,
                     "capacity_kN": found.peak,
                     "demand_over_capacity": pushed / found.peak if found.peak else math.inf,
-                    "drift_percent": moved,
+                    "drift_percent": moved if isPier else "",
                     "drift_capacity_percent": "" if found.drift is None else found.drift,
                     "drift_over_capacity": share,
                     "run": own or "",

@@ -63,7 +63,9 @@ def test_a_short_span_slides_and_irregular_masonry_cracks_along_its_diagonal(tmp
         (-100, 900, (38.5, 40), "NTC (7.8.4)"),
     ],
 )
-def test_a_spandrel_is_a_pier_that_lies_or_has_a_tie(tmp_path, normal, tie, capacities, clause):
+def test_a_spandrel_is_checked_as_a_pier_on_its_side_or_by_its_tie(
+    tmp_path, normal, tie, capacities, clause
+):
     rows = piers.check(made(tmp_path, normal, piers=[SPANDREL]), tie=tie)
     assert [row["capacity_kN"] for row in rows] == approx(capacities, rel=1e-4)
     assert rows[0]["clause"] == "EN 1998-3 C.4.2.1 as a pier"
@@ -108,7 +110,7 @@ NOT = (0.0, 0.0)
     ],
 )
 def test_the_widest_joints_say_how_a_pier_or_a_spandrel_gives_way(kind, axis, widths, mode):
-    found = piers.failureOf(joints(kind, *widths), (0, 0, 0), (1, 0.2, 1), axis)
+    found = piers.failureOf(joints(kind, *widths), np.zeros(3), np.array([1, 0.2, 1]), axis)
     assert found == ("rocking" if kind == "spandrel" and mode == "bed sliding" else mode)
 
 
