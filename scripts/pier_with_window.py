@@ -13,6 +13,8 @@ wall = bricks.Wall(length=3.08, height=2.43, openings=[window])
 scene = Scene("pier_with_window", wall, materials.calciumSilicate(), rate=50)
 base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
 scene.press(top, 0.3e6)  # [Pa]
+scene.pier()
+scene.spandrel()
 scene.settle()
 scene.cycle(top, [2, 4, 8])  # [mm]
 scene.finish()

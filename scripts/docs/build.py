@@ -42,7 +42,7 @@ PARTS = [
 #: its README.
 FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
-    FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
+    FIRST: ["scripts/TASKS", "scripts/WALL", "scripts/EXAMPLES", "gallery"],
     "Manual": (
         "scripts/README commands options scripts/WORDS scripts/FILES scripts/CHECKPOINTS"
         " scripts/SHARING scripts/RUNNING scripts/STUDIES yade_plugin/FOR_YADE_USERS"

@@ -8,6 +8,7 @@ Needs the plugin, python3-matplotlib, python3-scipy, python3-pil, and chromium f
 report.
 """
 
+import csv
 import glob
 import json
 import os
@@ -79,9 +80,14 @@ def ran(scene, name, *options):
 
 def pier():
     """The scene of scripts/WALL.md, as a file."""
-    path = os.path.join(RUNS, "pier.py")
-    with open(os.path.join(SCRIPTS, "WALL.md"), encoding="utf-8") as file:
-        text = re.search(r"^```python\n(.*?)^```", file.read(), re.M | re.S)[1]
+    return script("WALL.md", 0, "pier.py")
+
+
+def script(document, number, name):
+    """A piece of Python of a document, as a file."""
+    path = os.path.join(RUNS, name)
+    with open(os.path.join(SCRIPTS, document), encoding="utf-8") as file:
+        text = re.findall(r"^```python\n(.*?)^```", file.read(), re.M | re.S)[number]
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     return path
@@ -443,6 +449,56 @@ def capacity():
     saved(cropped(os.path.join(folder, "capacity.png")), "capacity")
 
 
+def piers():
+    """Piers and spandrel of a wall with a window: what a code says of each, and the run."""
+    folder = ran(os.path.join(SCRIPTS, "pier_with_window.py"), "pier_with_window")
+    called("/usr/bin/python3", "-m", "masonry_capacity.piers", folder, "--fb", "20", "--tie", "30")
+    with open(os.path.join(folder, "piers.csv"), newline="", encoding="utf-8") as file:
+        rows = {row["name"]: row for row in csv.DictReader(file) if row["code"] == "NTC 2018"}
+    figure, axes = sheet(4.2, (-1.1, -0.15), (4.2, 2.5))
+    for z in (-0.05, 2.43):
+        box(axes, (0, z), 3.08, 0.05, colour=GREY)
+    box(axes, (0, 0), 3.08, 2.43, colour=SHADES["brick"])
+    box(axes, (0.99, 0.81), 1.1, 0.972, colour="white")
+    for one in entries(folder)["piers"]:
+        (x, _, z), (right, _, top) = one["low_m"], one["high_m"]
+        row = rows[one["name"]]
+        share = float(row["demand_over_capacity"])
+        text = f"{one['name']}\n{row['failure']}: {row['capacity_kN']} kN\n"
+        text += f"demand / capacity {share:.2f}\nrun: {row['run']} {row['otherwise']}"
+        colour = matplotlib.colors.to_rgba(RED if share > 1 else BLUE, 0.25)
+        box(axes, (x, z), right - x, top - z, text, colour, fontsize=9)
+    figureSaved(figure, "piers")
+
+
+def strengthened():
+    """A pier of poor mortar and repointed, in ratios."""
+    values = "cohesion=4e4", "tensileStrength=2e4"
+    poor = [f"--set={kind}.{value}" for kind in ("bed", "head") for value in values]
+    before = ran(pier(), "poor", *poor)
+    axes = "--x drift_percent --y force_over_weight --label poor --label repointed".split()
+    path = os.path.join(RUNS, "strengthened.png")
+    plot = os.path.join(SCRIPTS, "plot.py")
+    called("/usr/bin/python3", plot, before, ran(pier(), "pier"), *axes, "--out", path)
+    saved(cropped(path), "strengthened")
+
+
+def damaged():
+    """Fragility of the parapet of scripts/STUDIES.md, by what a main shock has left."""
+    script("STUDIES.md", 2, "cracked.py")
+    after, folder = script("STUDIES.md", 3, "after.py"), os.path.join(RUNS, "after")
+    os.makedirs(os.path.join(RUNS, "records"), exist_ok=True)
+    for n in range(8, 20):  # pulses of 0.4 to 0.95 s, a whole sine each
+        wave = 0.3 * np.sin(2 * np.pi * np.arange(5 * n + 1) / (5 * n))
+        path = os.path.join(RUNS, "records", f"pulse{n:02}.AT2")
+        head = f"\n\nACCELERATION IN UNITS OF G\nNPTS= {len(wave)}, DT= .0100 SEC"
+        np.savetxt(path, wave, header=head, comments="")
+    called("/usr/bin/python3", "-m", "masonry_study", after, "--out", folder)
+    measure = "--by damage --limit 100 --measure shake_5_largest_displacement_of_crest_y_mm"
+    called("/usr/bin/python3", "-m", "masonry_study.report", folder, *measure.split())
+    saved(cropped(os.path.join(folder, "fragility.png")), "damaged")
+
+
 def study():
     """Forty piers whose cohesion and friction scatter."""
     pier()
@@ -454,7 +510,8 @@ def study():
     saved(cropped(os.path.join(folder, "scatter.png")), "study")
 
 
-DRAWN = [gallery, joint, law, supports, house, results, report, loop, mechanism, capacity, study]
+DRAWN = [gallery, joint, law, supports, house, results, report, loop, mechanism, capacity, piers]
+DRAWN += [strengthened, damaged, study]
 
 
 def main(names):

@@ -9,7 +9,8 @@ from masonry import Scene, bricks, materials
 
 dome = bricks.Dome(radius=2.0, thickness=0.2, courses=8, stones=16, oculus=0.4, lantern=0.5)
 
-scene = Scene("lantern_dome", dome, materials.dry(friction=0.7, normalStiffness=2e10))
+stones = materials.dry(friction=0.7, normalStiffness=2e10)
+scene = Scene("lantern_dome", dome, stones, title="Dome with a lantern")
 scene.platen("bottom")
 lid = scene.handle(len(dome) - 1, name="lid")
 scene.settle()

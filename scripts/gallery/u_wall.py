@@ -20,7 +20,8 @@ if args.tee:
 stones = materials.dry(friction=0.8, normalStiffness=5e10)
 stones.joints["bed"].elastic = True
 
-scene = Scene("u_wall", wall, stones, title="Wall in U or T", plane=False, arguments=args)
+title = f"Wall in {'T' if args.tee else 'U'}"
+scene = Scene("u_wall", wall, stones, title=title, plane=False, arguments=args)
 scene.platen("bottom")
 scene.watch((1.1, 0.1, height), name="top")
 scene.settle()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Checks of piers by codes, against numbers by hand."""
+"""Checks of piers and spandrels by codes, against numbers by hand."""
 
 from usual import *
 from made_runs import writeRun
@@ -8,7 +8,10 @@ from masonry_capacity import piers
 PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
 HEADS = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN"]
 COLUMNS = {"N": "a_N_kN", "V": "a_V_x_kN", "M": "a_M_y_kNm", "drift": "a_drift_x_mrad"}
-PIER = {"name": "a", "length_m": 1.0, "thickness_m": 0.2, "height_m": 1.5, **COLUMNS}
+box = lambda *high: {"low_m": [0.0, 0.0, 0.0], "high_m": [*high]}
+PIER = {"name": "a", "kind": "pier", **box(1.0, 0.2, 1.5), **COLUMNS}
+#: 1.5 m long and 1 m deep.
+SPANDREL = {"name": "a", "kind": "spandrel", **box(1.5, 0.2, 1.0), **COLUMNS}
 BED = {"compressiveStrength": 5e6, "cohesion": 0.2e6, "cap": True}
 
 
@@ -46,6 +49,69 @@ def test_a_short_span_slides_and_irregular_masonry_cracks_along_its_diagonal(tmp
     _, row = piers.check(folder, tau0=0.06)
     assert row["failure"] == "shear"
     assert row["capacity_kN"] == approx(0.2e3 * 0.09 / 1.5 * math.sqrt(1 + 0.5 / 0.09))
+
+
+@mark.parametrize(
+    "normal, tie, capacities, clause",
+    [
+        # fh = 2.5 MPa, σ0 = 0.5, H0 = 1 m: 50 kN (1 - 1.15/5), and 50 kN (1 - 1/5/0.85)
+        (-100, None, (38.5, 50 * (1 - 0.2 / 0.85)), "NTC 7.8.2.2.1 by 7.8.2.2.4"),
+        (3, None, (0, 0), "NTC 7.8.2.2.1 by 7.8.2.2.4"),
+        # Hp = 60 kN: Mu = 60 · 0.5 (1 - 60/(0.85 · 500)) = 25.76 kN m, Vp = 2 Mu/1.5
+        (3, 60, (0, 34.353), "NTC (7.8.6)"),
+        # Hp = 0.4 · 500 kN: Vp = 2 · 100 (1 - 200/425)/1.5 = 70.6; Vt = 1 · 0.2 m² · 0.2 MPa
+        (-100, 900, (38.5, 40), "NTC (7.8.4)"),
+    ],
+)
+def test_a_spandrel_is_checked_as_a_pier_on_its_side_or_by_its_tie(
+    tmp_path, normal, tie, capacities, clause
+):
+    rows = piers.check(made(tmp_path, normal, piers=[SPANDREL]), tie=tie)
+    assert [row["capacity_kN"] for row in rows] == approx(capacities, rel=1e-4)
+    assert rows[0]["clause"] == "EN 1998-3 C.4.2.1 as a pier"
+    assert rows[1]["clause"] == clause
+    assert rows[0]["H0_m"] == approx(1.0)
+    assert rows[0]["nu"] == approx(-normal / 500)
+    assert {row["drift_over_capacity"] for row in rows} == {""}
+
+
+def joints(kind, *widths):
+    """Joints of a box of 1 × 0.2 × 1 m: three beds of two joints, and a head joint between them,
+    with opening and slide [mm] of foot, middle and head, and of the head joint."""
+    beds = [(x, z, 2, width) for z, width in zip((0, 0.5, 1), widths) for x in (0.25, 0.75)]
+    rows = [*beds, (0.5, 0.75, 0, widths[3])]
+    flip = lambda x, z: (x, z) if kind == "pier" else (z, x)
+    places = [flip(x, z) for x, z, *_ in rows]
+    axes = [axis if kind == "pier" else 2 - axis for *_, axis, _ in rows]
+    return {
+        "bodies": np.array([[n, n + 1] for n in range(len(rows))]),
+        "area": np.full(len(rows), 0.1),
+        "points": np.array([[x, 0.1, z] for x, z in places]),
+        "cells": [np.array([n]) for n in range(len(rows))],
+        "normal": np.eye(3)[axes],
+        "opening": np.array([1e-3 * width[0] for *_, width in rows]),
+        "slide": np.array([[1e-3 * width[1], 0, 0] for *_, width in rows]),
+        "damage_compression": np.array([float(len(width) > 2) for *_, width in rows]),
+    }
+
+
+NOT = (0.0, 0.0)
+
+
+@mark.parametrize("kind, axis", [("pier", 2), ("spandrel", 0)])
+@mark.parametrize(
+    "widths, mode",
+    [
+        ((NOT, NOT, NOT, (0.04, 0)), "none"),
+        (((2, 0.1), NOT, (1, 0), (0.5, 0)), "rocking"),
+        (((2, 0.1), NOT, (1, 0, "crushed"), (0.5, 0)), "toe crushing"),
+        ((NOT, (0.2, 3), NOT, (3.1, 0)), "diagonal cracking"),
+        (((0.1, 0), (0.2, 3), NOT, (0.1, 0)), "bed sliding"),
+    ],
+)
+def test_the_widest_joints_say_how_a_pier_or_a_spandrel_gives_way(kind, axis, widths, mode):
+    found = piers.failureOf(joints(kind, *widths), np.zeros(3), np.array([1, 0.2, 1]), axis)
+    assert found == ("rocking" if kind == "spandrel" and mode == "bed sliding" else mode)
 
 
 def test_the_table_is_a_file_and_what_cannot_be_checked_is_refused(tmp_path, capsys):

@@ -140,6 +140,7 @@ WORDS = {
     "joint": (scene, dict(one=0, two=1)),
     "section": (scene, dict(z=0.1)),
     "pier": (scene, dict(low=(-9, -9, -9), high=(9, 9, 9))),
+    "spandrel": (scene, dict(low=(-9, -9, -9), high=(9, 9, 9))),
     "tie": (scene, dict(one=2, other=TOP, stiffness=1e6, strength=1e3)),
     "overlay": (space, dict(side=(0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1)),
     "ground": (lambda: scene(collapse="follow"), dict(level=-5.0)),

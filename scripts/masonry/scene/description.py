@@ -49,7 +49,7 @@ class Description:
         self.targets = ByName("target")
         self._boxes = None, None  # bricks, and what _nearest() knows of them
         self.joints, self.drifts, self.sections = [], [], []  # that are recorded
-        self.piers = []  # entries of run.json
+        self.piers = []  # and spandrels, entries of run.json
         self.connectors = []  # ties and springs, records of masonry.scene.ties
         self.overlays = []
         #: springs that stand for a soil without tension where periods are estimated

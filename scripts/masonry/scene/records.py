@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records beside its targets, and how its figures look: commands that describe a
-scene, and what a horizontal section transmits.
+scene, and what a section transmits.
 
-The free body above a section is that of all blocks, platens too, whose centroid was above its
-height z when the scene was built. The joints, ties and springs below it transmit all that acts on
-it, so their resultant is exact statics in any bond. At rest it is the weight of these blocks and
-the loads on them.
+The free body above a horizontal section is that of all blocks, platens too, whose centroid was
+above its height z when the scene was built. The joints, ties and springs below it transmit all that
+acts on it, so their resultant is exact statics in any bond. At rest it is the weight of these
+blocks and the loads on them. The upright section of a spandrel divides its bricks and lintels alike
+by their x or y, without platens above, which go through.
 """
 
 import itertools
@@ -27,6 +28,7 @@ from .ties import GROUND
 from .script import describes
 
 Corner = Annotated[Any, orNone(point("m", 1e6))]
+PIER, SPANDREL = "pier", "spandrel"
 BASE = "base"  # name of the section that every run on a platen records
 ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
 LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not lie above it
@@ -34,13 +36,14 @@ LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not l
 
 @dataclass
 class Section:
-    """A horizontal section whose forces are recorded. ``scene.section`` makes it."""
+    """A section whose forces are recorded. ``scene.section`` makes it."""
 
     name: str
-    z: float  # [m]
+    place: float  # [m] along its axis
     part: str  # of the bricks; None: all
     middle: tuple  # point in space about which moments are [m]
     isBase: bool = False  # recorded without a command
+    axis: int = 2  # across it; a section of axis 0 or 1 is upright
     members: Any = None  # indices of the bricks whose joints count alone; None: those of its part
     interactions: tuple | list = ()  # YADE's, of its joints, when the scene is built
     _read: tuple = (None, None)  # the last reading, and its forces
@@ -49,10 +52,10 @@ class Section:
         """Find its joints in a :class:`masonry.model.structure.Structure`. Raises Refused if there
         are none."""
         description = structure.description
-        size = description.high[2] - description.low[2]
-        level = self.z + LEVEL * (size + abs(self.z))
-        #: whether every body is above it, by its id; the ground is not
-        self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}
+        axis, at = self.axis, self.place
+        level = at + LEVEL * (description.high[axis] - description.low[axis] + abs(at))
+        #: whether every body is above it, or at larger x or y, by its id; the ground is not
+        self.above = {b.id: b.state.refPos[axis] > level for b in O.bodies} | {GROUND: False}
         self._structure = structure
         own = (
             b.part if self.members is None else n in self.members
@@ -74,14 +77,17 @@ class Section:
         if not self.interactions:
             what = f" of part {self.part!r}" if self.part else ""
             raise Refused(
-                f"section {self.name}: no joint{what} crosses z = {self.z:g} m: there must be one"
-                " between a block whose centroid is above and one whose centroid is below"
+                f"section {self.name}: no joint{what} crosses {'xyz'[axis]} = {at:g} m: there must"
+                " be one between blocks whose centroids are on different sides"
             )
 
     def _cross(self, one, other):
         """Whether one of two bodies is above it, and what joins them is of its part."""
         if self.above[one] == self.above[other]:
             return False
+        if self.axis < 2:
+            both = [self._parts.get(body) for body in (one, other)]
+            return None not in both and any(both)
         lower, upper = (one, other) if self.above[other] else (other, one)
         # a joint to a platen is of the part of its brick
         wanted = self.part if self.members is None else True
@@ -109,19 +115,26 @@ class Section:
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it; ``scene.section`` has the signs."""
-        at = f"the section at z = {self.z:g} m{f' of part {self.part}' if self.part else ''}"
+        upright, own = self.axis < 2, "xyz"[self.axis]
+        of = f" of part {self.part}" if self.part else ""
+        at = f"the section at {own} = {self.place:g} m{of}"
+        on = "what is above on what is below"
+        shears = "x" if plane else "xy"
+        moments = (("y", "large x"), ("x", "small y"))[: len(shears)]
+        if upright:
+            on, shears = f"what is at larger {own} on the rest", "z"
+            moments = ((("y", "small z"), ("x", "large z"))[self.axis],)
         about = "({})".format(", ".join(f"{v:g}" for v in self.middle))
-        yield self._column(0, 2, "N", "kN", f"normal force on {at}, positive in tension")
-        for i, axis in enumerate("x" if plane else "xy"):
-            meaning = f"shear force on {at}: of what is above on what is below, along {axis}"
-            yield self._column(0, i, f"V_{axis}", "kN", meaning)
-        for axis, side in (("y", "large x"), ("x", "small y"))[: 1 if plane else 2]:
+        yield self._column(0, self.axis, "N", "kN", f"normal force on {at}, positive in tension")
+        for axis in shears:
+            meaning = f"shear force on {at}: of {on}, along {axis}"
+            yield self._column(0, "xyz".index(axis), f"V_{axis}", "kN", meaning)
+        for axis, side in moments:
             meaning = (
-                f"moment on {at}: of what is above on what is below, about {axis} through {about} m"
-                f" by the right-hand rule, so that it presses the side of {side} where it is"
-                " positive"
+                f"moment on {at}: of {on}, about {axis} through {about} m by the right-hand rule, so"
+                f" that it presses the side of {side} where it is positive"
             )
-            yield self._column(1, "xy".index(axis), f"M_{axis}", "kNm", meaning)
+            yield self._column(1, "xyz".index(axis), f"M_{axis}", "kNm", meaning)
 
     def _column(self, which, axis, name, unit, meaning):
         def value(reading):
@@ -251,27 +264,60 @@ def pier(
     :param name: of the columns, and of several their beginning; None: ``pier`` and a number
     :param part: of the bricks, of which the piers are without a box; None: all
     """
+    _addElements(description, PIER, low, high, name, part)
+
+
+@describes
+@validated
+def spandrel(
+    description: Any,
+    low: Corner = None,
+    high: Corner = None,
+    name: Name | None = None,
+    part: Part | None = None,
+) -> None:
+    """Record normal force, shear force and moment of a spandrel in the upright section at the
+    middle of its length, for the same checks as of a :meth:`pier`.
+
+    They are the resultant of the joints between bricks of both sides, lintels and beams among them.
+    Without a box all spandrels of a wall are recorded: what is above an opening, up to the next one
+    or the top, where openings are one above the other.
+
+    :param low: lowest corner (x, y, z) of the box around the spandrel [m], in which the bricks have
+        their centroids; its longer horizontal side is the length, that of the opening
+    :param high: its highest corner [m]
+    :param name: of the columns, and of several their beginning; None: ``spandrel`` and a number
+    :param part: as of a pier
+    """
+    _addElements(description, SPANDREL, low, high, name, part)
+
+
+def _addElements(description, kind, low, high, name, part):
+    """Take the pier or spandrel of a box, or all of a wall. Raises ValueError."""
     boxes = [(low, high)]
     if (low is None) != (high is None):
-        raise ValueError("pier: give both corners of its box, or none")
+        raise ValueError(f"{kind}: give both corners of its box, or none")
     if low is None:
-        boxes = [*_besideOpenings(description, part)]
+        boxes = [*_besideOpenings(description, kind, part)]
         if not boxes:
-            raise ValueError("pier: openings overlap so that none is found: give low and high")
+            raise ValueError(f"{kind}: none is found by the openings: give low and high")
     for one, other in boxes:
-        own = name if name and len(boxes) == 1 else f"{name or 'pier'}{len(description.piers)}"
-        _addPier(description, np.array(one), np.array(other), own)
+        count = sum(entry["kind"] == kind for entry in description.piers)
+        own = name if name and len(boxes) == 1 else f"{name or kind}{count}"
+        _addElement(description, kind, np.array(one), np.array(other), own)
 
 
-def _besideOpenings(description, part):
-    """Lowest and highest corners of the piers of a wall [m]."""
+def _besideOpenings(description, kind, part):
+    """Lowest and highest corners of the piers or spandrels of a wall [m]."""
     corners = [np.array(b.corners) for b in description.bricks if part in (None, b.part)]
     boxes = np.array([[c.min(axis=0), c.max(axis=0)] for c in corners]).round(6)
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     along = int(high[1] - low[1] > high[0] - low[0])
-    levels, found = np.unique(boxes[:, :, 2]), []
+    # bands from opening to opening, upwards for piers, and the spans of masonry in each
+    across, through = (2, along) if kind == PIER else (along, 2)
+    levels, found = np.unique(boxes[:, :, across]), []
     for bottom, top in zip(levels, levels[1:]):
-        here = boxes[(boxes[:, 0, 2] < top) & (boxes[:, 1, 2] > bottom)][:, :, along]
+        here = boxes[(boxes[:, 0, across] < top) & (boxes[:, 1, across] > bottom)][:, :, through]
         spans: list[list[float]] = []
         for start, end in sorted(here.tolist()):
             if spans and start <= spans[-1][1] + 1e-5:
@@ -282,39 +328,43 @@ def _besideOpenings(description, part):
             found[-1][2] = top
         else:
             found.append([spans, bottom, top])
-    counts = [0, *(len(spans) for spans, *_ in found), 0]
+    pierced = lambda spans: len(spans) if kind == PIER else -sum(b - a for a, b in spans)
+    ranks = [0, *(pierced(spans) for spans, *_ in found), 0]
     for n, (spans, bottom, top) in enumerate(found, 1):
-        if counts[n] > max(counts[n - 1], counts[n + 1]):
+        if ranks[n] > max(ranks[n - 1], ranks[n + 1]) + 1e-5:
             for start, end in spans:
-                first, last = np.append(low[:2], bottom), np.append(high[:2], top)
-                first[along], last[along] = start, end
-                yield first, last
+                first, last = low.copy(), high.copy()
+                first[across], last[across] = bottom, top
+                first[through], last[through] = start, end
+                if kind == PIER or start > low[2]:  # else it lies on the foundation
+                    yield first, last
 
 
-def _addPier(description, low, high, name):
-    """Take a pier, the bricks in a box. Raises ValueError."""
+def _addElement(description, kind, low, high, name):
+    """Take the bricks in a box. Raises ValueError."""
     middles = np.array([np.mean(b.corners, axis=0) for b in description.bricks])
     middle, size = (low + high) / 2, high - low
     inside = np.all((middles > low) & (middles < high), axis=1)
     members = [int(n) for n in np.nonzero(inside)[0]]
-    # bricks of the lowest and the highest course, the nearest to the axis of the pier first
-    members.sort(key=lambda n: float(np.abs(middles[n] - middle)[:2].sum()))
-    level = lambda n: round(float(middles[n][2]), 6)
-    ends = [choose(members, key=level, default=0) for choose in (min, max)]
-    if not members or level(ends[0]) == level(ends[1]):
-        raise ValueError(f"pier {name}: its box must have two courses of bricks at least")
-    foot, head = (
-        brickTarget(description, n, f"{name}_{end}", fixed=False, loaded=False)
-        for n, end in zip(ends, ("foot", "head"))
-    )
-    description.drifts.append(Drift(f"{name}_drift", foot, head))
+    axis, along, about = (0, "x", "y") if size[0] >= size[1] else (1, "y", "x")
+    columns = {"N": "N_kN", "V": "V_z_kN", "M": f"M_{about}_kNm"}
+    if kind == PIER:
+        axis = 2
+        columns.update(V=f"V_{along}_kN", drift=f"drift_{along}_mrad")
+        # bricks of the lowest and the highest course, the nearest to the axis of the pier first
+        members.sort(key=lambda n: float(np.abs(middles[n] - middle)[:2].sum()))
+        level = lambda n: round(float(middles[n][2]), 6)
+        ends = [choose(members, key=level, default=0) for choose in (min, max)]
+        if not members or level(ends[0]) == level(ends[1]):
+            raise ValueError(f"pier {name}: its box must have two courses of bricks at least")
+        foot, head = (
+            brickTarget(description, n, f"{name}_{end}", fixed=False, loaded=False)
+            for n, end in zip(ends, ("foot", "head"))
+        )
+        description.drifts.append(Drift(f"{name}_drift", foot, head))
     at, own = tuple(middle.tolist()), frozenset(members)
-    description.sections.append(Section(name, at[2], None, at, members=own))
-    along, about = ("x", "y") if size[0] >= size[1] else ("y", "x")
-    columns = {"N": "N_kN", "V": f"V_{along}_kN", "M": f"M_{about}_kNm"}
-    columns["drift"] = f"drift_{along}_mrad"
-    long, deep, tall = (float(side) for side in (max(size[:2]), min(size[:2]), size[2]))
-    entry = {"name": name, "length_m": long, "thickness_m": deep, "height_m": tall}
+    description.sections.append(Section(name, at[axis], None, at, members=own, axis=axis))
+    entry = {"name": name, "kind": kind, "low_m": low.tolist(), "high_m": high.tolist()}
     description.piers.append({**entry, **{n: f"{name}_{head}" for n, head in columns.items()}})
 
 
@@ -341,7 +391,7 @@ def recordBase(description: Any) -> None:
     """Record the section at the base of a structure on platens, unless the scene has one."""
     z, targets = float(description.low[2]), description.targets.values()
     near = 1e-6 * (1 + abs(z))
-    own = (s.part is None and abs(s.z - z) < near for s in description.sections)
+    own = (s.part is None and s.axis == 2 and abs(s.place - z) < near for s in description.sections)
     if any(own) or not any(t.box and t.fixed and t.joined for t in targets):
         return
     taken = {one.name for one in (*description.sections, *description.extra)}

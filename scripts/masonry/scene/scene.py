@@ -147,7 +147,8 @@ class Scene:
 
     platen, watch, handle = platens.platen, platens.watch, platens.handle
     drift, column = records.drift, records.column
-    joint, section, pier, view = records.joint, records.section, records.pier, records.view
+    joint, section, view = records.joint, records.section, records.view
+    pier, spandrel = records.pier, records.spandrel
     tie, spring, overlay = connections.tie, connections.spring, connections.overlay
     ground = contact.ground
     # stages have these names after the first stage

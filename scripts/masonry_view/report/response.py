@@ -200,7 +200,7 @@ def _piers(record):
     path = os.path.join(record.directory, "piers.csv")
     if os.path.exists(path):
         heads, *lines = csv.reader(readText(path).splitlines())
-        caption = "Piers by codes, beside what the run found. Source: piers.csv"
+        caption = "Piers and spandrels by codes, beside what the run found. Source: piers.csv"
         yield table([head.replace("_", " ") for head in heads], lines, caption)
 
 
