@@ -167,11 +167,13 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
 # -- the search ------------------------------------------------------------------------------------
 
 
-def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, thrown=0.0):
+def search(
+    patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, thrown=0.0, long=False
+):
     """A search on a structure that holds loads below its capacity from rest, less ``thrown`` times
     the step of the load, and below another one from a state in which it moves, and that buckles
-    from a third load on. Returns its memory, the scene and the trials: factor, whether it began at
-    rest, the state it began with, and whether it was held."""
+    from a third load on; trials may be ``long``. Returns its memory, the scene and the trials: factor,
+    whether it began at rest, the state it began with, and whether it was held."""
     last, states = growth["last"], growth["states"]
     here, trials = {"state": None, "factor": last}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
@@ -190,6 +192,7 @@ def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, th
 
     class Known(growing._Search):
         def _wait(self):
+            at.trial.halves = int(long)
             goal, fromRest = at.trial.factor, at.trial.fromRest
             step = goal - at.trial.source
             held = goal + thrown * step < capacity if fromRest else goal < moving
@@ -256,12 +259,12 @@ def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsO
 
 
 @settings(max_examples=150)
-@given(some.floats(0.02, 1.3), growths)
-def test_a_search_brackets_a_load_that_buckles(buckles, growth):
+@given(some.floats(0.02, 1.3), growths, some.booleans())
+def test_a_search_brackets_a_load_that_buckles(buckles, growth, long):
     last, within = growth["last"], growth["within"]
     with pytest.MonkeyPatch.context() as patch:
         buckling = buckles * last
-        at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling)
+        at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling, long=long)
         held, lost = at.held.factor, at.failure and at.failure.factor
         assert len(trials) < 60 and held < buckling
         if lost is None:
