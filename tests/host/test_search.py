@@ -172,8 +172,8 @@ def search(
 ):
     """A search on a structure that holds loads below its capacity from rest, less ``thrown`` times
     the step of the load, and below another one from a state in which it moves, and that buckles
-    from a third load on; trials may be ``long``. Returns its memory, the scene and the trials: factor,
-    whether it began at rest, the state it began with, and whether it was held."""
+    from a third load on; trials may be ``long``. Returns its memory, the scene and the trials:
+    factor, whether it began at rest, the state it began with, and whether it was held."""
     last, states = growth["last"], growth["states"]
     here, trials = {"state": None, "factor": last}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
@@ -226,8 +226,11 @@ growths = some.fixed_dictionaries(GROWTH)
     some.floats(0.0, 1.2),
     growths,
     some.floats(0.0, 2.0),
+    some.booleans(),
 )
-def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsOff, growth, thrown):
+def test_a_search_brackets_what_is_held_whatever_it_tries(
+    capacity, moves, setsOff, growth, thrown, long
+):
     """What a structure holds hangs neither on how it moves while the load grows, nor on how far a
     step of the load throws it: the load that is not held was tried last from the state at rest
     just below it."""
@@ -236,8 +239,12 @@ def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsO
         rest = capacity * last  # from rest it holds more than while it moves
         fell = rest <= last or moves * rest <= last
         moving = moves * rest
-        at, made, trials, found = search(patch, rest, moving, fell, setsOff, growth, thrown=thrown)
+        at, made, trials, found = search(
+            patch, rest, moving, fell, setsOff, growth, thrown=thrown, long=long
+        )
         assert len(trials) < 90 and at.held
+        late = [n for n, (_, fromRest, _, held) in enumerate(trials) if held and not fromRest]
+        assert not long or not late or all(fromRest for _, fromRest, _, _ in trials[late[0] + 1 :])
         held, lost = at.held.factor, at.failure and at.failure.factor
         assert held < rest and at.held.displacement == approx(held)
         for factor, fromRest, state, _ in trials:
