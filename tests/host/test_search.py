@@ -281,6 +281,13 @@ def test_a_search_brackets_a_load_that_buckles(buckles, growth, long):
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
 
 
+def test_a_search_begins_where_rest_was_left_also_if_the_structure_stood_at_the_end():
+    with pytest.MonkeyPatch.context() as patch:
+        growth = dict(last=1.0, within=0.005, states=20)
+        _, _, trials, _ = search(patch, 0.9, 0.8, False, 0.7, growth)
+        assert [factor for factor, *_ in trials[:2]] == approx([1.0, 0.65])
+
+
 def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number():
     with pytest.MonkeyPatch.context() as patch:
         growth = dict(last=1.0, within=0.005, states=20)
