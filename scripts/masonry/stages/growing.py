@@ -98,7 +98,7 @@ class Trial(Waiting):
 
     @property
     def isLong(self):
-        """Whether it began at rest, and a structure near its limit may be what it waits for."""
+        """Whether it began at rest, and half of the time for which it waits at least is over."""
         return self.fromRest and self.halves > 0
 
 
@@ -120,8 +120,6 @@ class Growing(Timed):
     #: Whether the largest load that was held was seen to buckle; from then on every trial is
     #: checked so.
     buckled: bool = False
-    #: Whether a state of the growth came to rest late, so that later trials begin at rest.
-    swings: bool = False
     tried: Sequence[float] = ()  # factors of all trials so far
     since: int = 0  # how many of them were made before the search began again
     #: Of all loads that were held, growing: the factor, the displacement [mm], and the state at
@@ -409,8 +407,7 @@ class _Search:
             most = self.load.factor(1.0)
             goal = min(held.factor * (1 + self.within * 2**at.climbs), most)
             return held.factor < most and self._startFromRest(goal)
-        fromRest = at.climbs or held and (at.buckled or at.swings)
-        index = None if fromRest else self._ofGrowth()
+        index = None if at.climbs or held and at.buckled else self._ofGrowth()
         if index is not None:
             factor, state = at.kept[index]
             return self._start(Trial(source=factor, factor=factor), state)
@@ -528,7 +525,6 @@ class _Search:
         at.tried, at.trial = [*at.tried, trial.factor], None
         detail = f"trial {len(at.tried)}: {trial.factor:.4g} "
         if reason is None:
-            at.swings = at.swings or trial.halves > 0 and not trial.fromRest
             state = _present()
             most = max(LEAST_KEPT, int(KEPT_BYTES / len(state)))
             at.rests = [*at.rests, [*end, state]][-most:]
