@@ -167,11 +167,13 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
 # -- the search ------------------------------------------------------------------------------------
 
 
-def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, thrown=0.0):
+def search(
+    patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, thrown=0.0, long=False
+):
     """A search on a structure that holds loads below its capacity from rest, less ``thrown`` times
     the step of the load, and below another one from a state in which it moves, and that buckles
-    from a third load on. Returns its memory, the scene and the trials: factor, whether it began at
-    rest, the state it began with, and whether it was held."""
+    from a third load on; trials may be ``long``. Returns its memory, the scene and the trials:
+    factor, whether it began at rest, the state it began with, and whether it was held."""
     last, states = growth["last"], growth["states"]
     here, trials = {"state": None, "factor": last}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
@@ -190,6 +192,7 @@ def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf, th
 
     class Known(growing._Search):
         def _wait(self):
+            at.trial.halves = int(long)
             goal, fromRest = at.trial.factor, at.trial.fromRest
             step = goal - at.trial.source
             held = goal + thrown * step < capacity if fromRest else goal < moving
@@ -223,8 +226,11 @@ growths = some.fixed_dictionaries(GROWTH)
     some.floats(0.0, 1.2),
     growths,
     some.floats(0.0, 2.0),
+    some.booleans(),
 )
-def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsOff, growth, thrown):
+def test_a_search_brackets_what_is_held_whatever_it_tries(
+    capacity, moves, setsOff, growth, thrown, long
+):
     """What a structure holds hangs neither on how it moves while the load grows, nor on how far a
     step of the load throws it: the load that is not held was tried last from the state at rest
     just below it."""
@@ -233,7 +239,9 @@ def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsO
         rest = capacity * last  # from rest it holds more than while it moves
         fell = rest <= last or moves * rest <= last
         moving = moves * rest
-        at, made, trials, found = search(patch, rest, moving, fell, setsOff, growth, thrown=thrown)
+        at, made, trials, found = search(
+            patch, rest, moving, fell, setsOff, growth, thrown=thrown, long=long
+        )
         assert len(trials) < 90 and at.held
         held, lost = at.held.factor, at.failure and at.failure.factor
         assert held < rest and at.held.displacement == approx(held)
@@ -256,12 +264,12 @@ def test_a_search_brackets_what_is_held_whatever_it_tries(capacity, moves, setsO
 
 
 @settings(max_examples=150)
-@given(some.floats(0.02, 1.3), growths)
-def test_a_search_brackets_a_load_that_buckles(buckles, growth):
+@given(some.floats(0.02, 1.3), growths, some.booleans())
+def test_a_search_brackets_a_load_that_buckles(buckles, growth, long):
     last, within = growth["last"], growth["within"]
     with pytest.MonkeyPatch.context() as patch:
         buckling = buckles * last
-        at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling)
+        at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling, long=long)
         held, lost = at.held.factor, at.failure and at.failure.factor
         assert len(trials) < 60 and held < buckling
         if lost is None:
@@ -269,6 +277,13 @@ def test_a_search_brackets_a_load_that_buckles(buckles, growth):
         else:
             assert lost >= buckling and at.failure.reason is Reason.BUCKLES
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
+
+
+def test_a_search_begins_where_rest_was_left_also_if_the_structure_stood_at_the_end():
+    with pytest.MonkeyPatch.context() as patch:
+        growth = dict(last=1.0, within=0.005, states=20)
+        _, _, trials, _ = search(patch, 0.9, 0.8, False, 0.7, growth)
+        assert [factor for factor, *_ in trials[:2]] == approx([1.0, 0.65])
 
 
 def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number():

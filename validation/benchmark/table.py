@@ -28,7 +28,7 @@ BENCHMARK = "validation/benchmark/"
 ROWS_OF_A_STUDY = """\
 from {package} import Study, uniform
 vary = {{"{name}": uniform(0.6, 0.8)}}
-study = Study("{scene}", options={options}, runs={runs}, seed=1, jobs=1, vary=vary)
+study = Study("{scene}", options={options}, runs={runs}, seed=1, vary=vary)
 """
 
 
@@ -71,8 +71,8 @@ def study(name, runs, options, varied):
 
 SHAKEN = [*YADE, BENCHMARK + "shaken_facade.py", "--lean", "--preset", "fast", "--seconds", "4"]
 ROWS = {
-    "20 rows of arch": study("arch", 20, {}, "dry.friction"),
-    "20 rows of parapet": study("parapet", 20, {}, "dry.friction"),
+    "20 rows of arch": study("arch", 20, {}, "bed.friction"),
+    "20 rows of parapet": study("parapet", 20, {}, "bed.friction"),
     "8 rows of COMP-4 fast": study("wall_comp4", 8, {"preset": "fast"}, "bed.friction"),
     "falling_gable": scene("falling_gable", "--lean"),
     "spreading_arch": scene("spreading_arch", "--lean"),

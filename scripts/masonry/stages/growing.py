@@ -13,9 +13,9 @@ load grew, nor which loads were tried.
 
 A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the
 largest load that was held is checked with a small push to the side
-(:func:`masonry.model.period.buckles`), and so is the state from which a long trial began. If the
-push grows, the load is not held. The search then begins again at the states at rest below it, and
-every later trial is checked so.
+(:func:`masonry.model.period.buckles`), and so are those of a long trial and that from which one
+began. If the push grows, the load is not held. The search then begins again at the states at rest
+below it, and every later trial is checked so.
 """
 
 import base64
@@ -95,6 +95,11 @@ class Trial(Waiting):
     factor: float = 0.0
     fromRest: bool = False  # whether that state is at rest
     speeds: Sequence[float] = ()  # Motion.fastest after 1, 2, 4, ... checks [-]
+
+    @property
+    def isLong(self):
+        """Whether it began at rest, and half of the time for which it waits at least is over."""
+        return self.fromRest and self.halves > 0
 
 
 @dataclass
@@ -328,9 +333,12 @@ class _Search:
             if reason is Reason.BUCKLES:
                 self._beginBelow()
                 continue
-            if reason is None and at.buckled and self._buckles(at.trial.factor):
+            factor, isLong = at.trial.factor, at.trial.isLong
+            if reason is None and at.buckled and self._buckles(factor):
                 reason = Reason.BUCKLES
             self._note(reason)
+            if reason is None and isLong and factor > at.steady and self._buckles(factor):
+                self._beginBelow()
 
     def end(self):
         """Take the scene to where the stage ends, and return how it ended."""
@@ -434,12 +442,10 @@ class _Search:
         step = 2 ** max(0, len(at.tried) - at.since - 1)
         # numbers of the last state up to what was held, and of the first from what was not
         low = at.held and bisect.bisect_right(factors, at.held.factor) - 1
-        high = at.failure and sum(factor < at.failure.factor for factor in factors)
-        if low is None and high is None:
-            return self._guess(factors)
+        high = sum(not at.failure or factor < at.failure.factor for factor in factors)
         if low is None:
-            return max(0, high - step) if high else None
-        if high is None:
+            return max(0, min(self._guess(factors), high - step)) if high else None
+        if at.failure is None:
             return min(len(factors) - 1, low + step) if low + 1 < len(factors) else None
         lost = at.failure.factor
         wide = lost - at.held.factor > self.within * lost
@@ -500,8 +506,7 @@ class _Search:
                 return Reason.ACCELERATED
             if trial.isGivenUp(longest):
                 return Reason.MOVING
-            isLong = trial.halves > 0 and trial.fromRest
-            if isLong and trial.source > at.steady and self._sourceBuckles():
+            if trial.isLong and trial.source > at.steady and self._sourceBuckles():
                 return Reason.BUCKLES
 
     def _accelerates(self, speed):
