@@ -73,6 +73,7 @@ double timeStepLimit(SceneStore& store, bool anew) {
 }
 
 static void changeTimeStep(SceneStore& store, double dt) {
+    if (!(dt < HUGE_VAL)) return; // no joint and no pair has stiffness yet
     if (store.integrator) store.integrator->stepChange = dt - store.scene().dt;
     store.scene().dt = dt;
 }
