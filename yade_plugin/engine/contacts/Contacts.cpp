@@ -540,9 +540,9 @@ int Contacts::touching() const {
 }
 
 Vector3r Contacts::forceOf(int id1, int id2) const {
-    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
-            return pairs_[p].other == id2 ? effects_[p].wrench.force : Vector3r(-effects_[p].wrench.force);
+    for (const auto& of : pairForces())
+        if (std::minmax(id1, id2) == std::minmax(of.one, of.other))
+            return of.other == id2 ? of.force : Vector3r(-of.force);
     return Vector3r::Zero();
 }
 

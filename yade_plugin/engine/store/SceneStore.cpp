@@ -285,12 +285,11 @@ void SceneStore::readJoints() {
         if (attached) zonesOfJoints = attached->zones.get();
         found.push_back({&interaction, geom, phys});
     }
-    const auto before = std::move(kinds);
-    groupJoints(std::move(found), false);
     // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or of which only
     // one half is left. With one of the latter the old groups stay readable, and checkScene() reports it.
-    for (auto& kind : before)
+    for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
+    groupJoints(std::move(found), false);
 }
 
 // Moves joints into common groups, one for each kind. Within a kind they keep the order of the host's container. If
@@ -339,6 +338,7 @@ void SceneStore::groupJoints(std::vector<JointView> found, bool sameProperties) 
         if (known != kinds.end() && std::all_of(group.members.begin(), group.members.end(),
                                                 [&](std::size_t n) { return found[n].geom->group == known->shapes; })) {
             made.push_back(*known);
+            kinds.erase(known);
             continue;
         }
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
@@ -364,6 +364,8 @@ void SceneStore::groupJoints(std::vector<JointView> found, bool sameProperties) 
         kind.shapes->shareShapes(wereThere);
         made.push_back(kind);
     }
+    for (auto& kind : kinds)
+        kind.shapes->left = kind.states->left = kind.shapes->left || sameProperties;
     kinds = std::move(made);
     joints = std::move(found);
 }

@@ -79,6 +79,8 @@ static void changeTimeStep(SceneStore& store, double dt) {
 }
 
 void beginFollowing(SceneStore& store) {
+    for (int b = 0; b < store.bodies.size(); ++b)
+        if (store.bodies.has(b)) store.bodies.detectAnyChange(b);
     for (auto* one : store.contacts)
         one->boundPairs(store, store.damping(), true);
     const double limit = timeStepLimit(store, true);
