@@ -4,9 +4,7 @@
 #include "common/Text.hpp"
 #include <Eigen/Dense>
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <set>
 
 namespace masonry {
 
@@ -426,8 +424,8 @@ double Refinement::widthOf(const SceneContents& store, const JointReference& r, 
             for (int body : that.bodies)
                 if (side.body == body && partOf_[body] >= 0 && parallel < parallelBeds)
                     return widths_[place] = extentOf(r, axis);
-        const double rise = that.reach * (std::sqrt(std::max(0.0, 1 - parallel * parallel)) + 1e-3);
-        if (std::abs((that.middle - r.polygon()[0]).dot(r.normal)) > apart + rise) continue; // without its corners
+        const double rise = 1.001 * apart + 0.5 * that.box.sizes().dot(r.normal.cwiseAbs());
+        if (std::abs((that.box.center() - r.polygon()[0]).dot(r.normal)) > rise) continue; // far, whatever its corners
         const auto box = boxOf(store.joints[n].geom->reference().polygon());
         const double common =
             std::min(box.max()[other], own.max()[other]) - std::max(box.min()[other], own.min()[other]);
@@ -475,12 +473,9 @@ void Refinement::readParts(const SceneContents& store) {
         const auto& p = joint.phys->law().properties();
         for (int side = 0; side < 2 && (p.tensileStrength > 0 || p.cohesion > 0); ++side)
             bonds_[r.sides[side].body].emplace_back(r.sides[1 - side].body, joint.geom.get());
-        Place place{r.normal, Vector3r::Zero(), 0, {r.sides[0].body, r.sides[1].body}};
+        places_.push_back({r.normal, {}, {r.sides[0].body, r.sides[1].body}});
         for (const auto& corner : r.polygon())
-            place.middle += corner / double(r.polygon().size());
-        for (const auto& corner : r.polygon())
-            place.reach = std::max(place.reach, (corner - place.middle).norm());
-        places_.push_back(place);
+            places_.back().box.extend(corner);
     }
     stiffnessRevision_ = store.stiffnessRevision();
 }

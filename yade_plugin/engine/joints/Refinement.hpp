@@ -105,8 +105,8 @@ private:
     std::map<std::pair<const Polygon*, int>, double> widths_; // see widthOf(), by the joint and the axis
     std::vector<std::vector<std::pair<int, const JointGeometry*>>> bonds_; // of each body with others
     struct Place {                                                         // of a joint
-        Vector3r normal, middle;
-        double reach; // largest distance of a corner from the middle [m]
+        Vector3r normal;
+        Eigen::AlignedBox3d box;
         int bodies[2];
     };
     std::vector<Place> places_;   // of the store's joints, side by side in memory for widthOf()
