@@ -186,6 +186,33 @@ def test_what_cannot_be_is_refused(wrong, message):
             act()
 
 
+def test_the_time_step_that_follows_knows_the_present_stiffness_and_masses():
+    """It falls with the root of stiffness over mass, by 10 and by 2."""
+    ground()
+    s = O.bodies[box(UNIT, (0, 0, UNIT[2] / 2))].state
+    contacts = prepare(normalStiffness=1e8)
+    there = O.dt
+    contacts.follow(0.8)
+    assert O.dt == there  # no pair is known yet
+    O.run(2, True)
+    before = O.dt
+    contacts.normalStiffness *= 100
+    O.step()
+    near = dict(rel=1e-3)  # the part of the faces that is near follows the present places
+    assert O.dt == approx(before / 10, **near)
+    s.mass, s.inertia = s.mass / 4, s.inertia / 4
+    contacts.follow(0.8)
+    assert O.dt == approx(before / 20, **near)
+
+
+@mark.parametrize("share", [5, -1, math.nan])
+def test_a_time_step_that_would_not_be_stable_is_not_followed(share):
+    ground()
+    contacts = prepare()
+    with raises(ValueError, match=f"follow: share {share} must be at least 0 and at most 1"):
+        contacts.follow(share)
+
+
 def test_the_engine_stands_after_the_resetter_and_refuses_deformable_units():
     ground()
     box(UNIT, (0, 0, 0.2))

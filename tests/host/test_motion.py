@@ -171,6 +171,19 @@ def test_a_testing_machine_that_does_not_fit_is_refused():
             MasonryLoad(**of)
 
 
+def test_gravity_that_is_set_during_a_record_acts_beside_it():
+    stack(count=2)
+    mover = ofKind(MasonryIntegrator)
+    mover.shake([0.0, 2.0, 2.0, 2.0], [Vector3.UnitX], 1.0, 1.0)
+    O.dt = 1e-5
+    run(2)
+    mover.gravity = (0, 0, -5)
+    run(2)
+    assert mover.gravity == approx((-2 * 3.5 * O.dt, 0, -5))  # in the middle of the fourth step
+    mover.shake([], [], 1.0, 1.0)
+    assert mover.gravity == (0, 0, -5)
+
+
 def test_a_load_that_is_dead_does_no_work():
     stack(count=2, damping=0.1)
     where = O.bodies[1].state.pos

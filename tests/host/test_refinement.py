@@ -370,24 +370,34 @@ def leaning(
     inPlane=True,
     most=0,
     wall=False,
+    bracket=0.0,
     **bond,
 ):
     """The points of the joints of a column of five dry blocks of 0.2 × 0.2 × 0.1 m, which an
-    eccentric load presses; then of the same after it has been saved and loaded."""
+    eccentric load presses; beside it a block that is bonded to all of them, by 100 Pa times
+    ``bracket``."""
     O.reset()
     unit = unitMaterial(young=1e6 * stiffness, poisson=0.2)
     if wall:  # a structure beside it
         pile(2, x=5, size=(9, 0.2, 0.1), material=unit, inPlane=inPlane)
     top = pile(6, size=(0.2, 0.2, 0.1), material=unit, inPlane=inPlane)[-1]
+    kinds = []
+    if bracket:
+        beside = unitMaterial(young=1e6 * stiffness, poisson=0.2, jointSet="bracket")
+        addBlock(box((0.2, 0, 0), (0.1, 0.2, 0.6)), beside, inPlane=inPlane)
+        glue = dict(tensileStrength=1e2 * bracket, modeIFractureEnergy=1e-4 * bracket**2)
+        glue.update(cohesion=1e3 * bracket, modeIIFractureEnergy=1e-2 * bracket**2, cap=False)
+        glue.update(normalStiffness=stiffness, shearStiffness=stiffness, jointSet="bracket")
+        kinds.append(MasonryJoint(name="glue", **glue))
     head = MasonryLoad(body=top, point=(0.1 + lever[0], 0.1 + lever[1], 0.6), damped=True)
     dry = dict(tensileStrength=0, cohesion=0, friction=2, residualFriction=2, cap=False, law=law)
     dry.update(normalStiffness=stiffness, shearStiffness=stiffness, **bond)
     around = dict(gravity=(0, 0, 0), damping=0.7, inPlane=inPlane, subcontacts=3)
-    joints = join(MasonryJoint(**dry), loads=[head], **around)
+    joints = join([*kinds, MasonryJoint(**dry)], loads=[head], **around)
     loop().points = most
     head.force = Vector3(0, 0, -load)
     run(3000)
-    return [j for j in joints if j.geom.centres[0][0] < 1]
+    return [j for j in joints if j.geom.centres[0][0] < 1 and j.geom.normal[2] ** 2 > 0.5]
 
 
 @LAWS
@@ -406,6 +416,11 @@ def test_a_joint_whose_bond_has_cracked_gets_the_points_of_a_dry_one():
     bond.update(cohesion=1e3, modeIIFractureEnergy=1e-2)
     assert {len(j.geom.areas) for j in leaning(1e9, **bond)} == {14}
     assert {len(j.geom.areas) for j in leaning(1e12, **bond)} == {8}
+
+
+@mark.parametrize("bracket, count", [(1, 14), (1e4, 3)])
+def test_a_bond_bridges_dry_joints_until_it_has_cracked(bracket, count):
+    assert {len(j.geom.areas) for j in leaning(1e9, bracket=bracket)} == {count}
 
 
 def test_a_structure_beside_a_column_does_not_count():

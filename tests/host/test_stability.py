@@ -49,6 +49,15 @@ def test_a_time_step_above_its_limit_is_refused_and_named(blocks, functors, how)
     assert O.iter == there + 100
 
 
+def test_a_testing_machine_that_sets_the_limit_is_named():
+    upper = O.bodies[pile()[1]].state
+    join()
+    drive = dict(force=(0, 0, -1e3), direction=(0, 0, -1), stiffness=1e13)
+    insert(MasonryLoad(body=1, point=upper.pos, engaged=True, **drive))
+    with raises(RuntimeError, match="which the testing machine at body 1 sets"):
+        run(200)
+
+
 @FUNCTORS
 @BLOCKS
 def test_the_limit_follows_joints_and_damping(blocks, functors):

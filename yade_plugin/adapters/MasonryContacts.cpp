@@ -44,6 +44,9 @@ void MasonryContacts::undamp(SceneStore& store, const std::vector<int>& loose) {
 }
 
 void MasonryContacts::follow(double share) {
+    if (!(share >= 0 && share <= 1))
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".follow: share " + text(share) +
+                                    " must be at least 0 and at most 1");
     StillScene store;
     stepShare = share;
     undamp(*store, looseIn(*store));

@@ -83,7 +83,8 @@ class MasonryContacts : public EngineAdapter<MasonryContacts>, public Contacts {
                  "axes. The force of an impact depends on stiffness and time step, and its impulse does not.")
             .def("follow", &MasonryContacts::follow, py::args("share"),
                  "From now on O.dt is this share of the limit that the present pairs of blocks allow, and changes "
-                 "when other blocks are near each other. 0: it stays, and its limit is that of any contacts that may "
+                 "when other blocks are near each other; call it again when masses or blocked axes have changed. 0: it "
+                 "stays, and its limit is that of any contacts that may "
                  "come.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "

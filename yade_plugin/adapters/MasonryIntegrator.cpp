@@ -8,11 +8,11 @@ namespace masonry {
 void MasonryIntegrator::shake(const std::vector<double>& samples, const std::vector<Vector3r>& axes, double interval,
                               double factor) {
     const BetweenSteps still;
-    if (!shaking.samples.empty()) gravity = shaking.beside;
+    if (!shaking.samples.empty() && gravity == shaking.last) gravity = shaking.beside;
     if (!samples.empty() && (axes.empty() || samples.size() % axes.size() != 0 || !(interval > 0)))
         throw std::invalid_argument(nameOf(ClassRole::Integrator) +
                                     ".shake: needs axes, as many samples along each, and an interval above 0");
-    shaking = {samples, axes, interval, factor, gravity};
+    shaking = {samples, axes, interval, factor, gravity, gravity};
 }
 
 void MasonryIntegrator::step(SceneStore& store) { advance(*scene, store.bodies, store.loads, store.foreignForces); }

@@ -50,8 +50,8 @@ class MasonryIntegrator : public EngineAdapter<MasonryIntegrator>, public Integr
         cls.def("shake", &MasonryIntegrator::shake, py::args("samples", "axes", "interval", "factor"),
                 "From now on gravity is the present one less the acceleration of the ground: its samples [m/s² over "
                 "factor] along axes, a list of unit vectors, one axis after the other, interval [s] apart. Each step "
-                "has the acceleration of its middle. Checkpoints hold how far the record is, but not its samples. An "
-                "empty list ends it, and gravity is what it was.");
+                "has the acceleration of its middle. Gravity that is set meanwhile acts beside the record. Checkpoints "
+                "hold how far the record is, but not its samples. An empty list ends it.");
     }
 
     using Integrator::problems;

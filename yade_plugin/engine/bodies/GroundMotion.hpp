@@ -12,12 +12,22 @@ struct GroundMotion {
     double interval = 0;               // between two samples [s]
     double factor = 1;                 // on the samples; the product is in m/s²
     yade::Vector3r beside = {0, 0, 0}; // gravity without the record [m/s²]
+    yade::Vector3r last = {0, 0, 0};   // gravity of the last step [m/s²]
 
     long steps = 0;      // since the record began or the time step changed
     double before = 0;   // time of the record before these steps [s]
     double stepThen = 0; // their time step [s]
 
-    // Gravity in the middle of a step, between samples by a straight line; without the record after its end [m/s²].
+    // Sets gravity to that in the middle of a step, between samples by a straight line; without the record after its
+    // end. Gravity that was changed since the last step is what acts beside the record from now on.
+    void act(double dt, yade::Vector3r& gravity) {
+        if (gravity != last) beside = gravity;
+        gravity = last = gravityIn(dt);
+    }
+
+    template <class Visit> void visitState(Visit&& visit) { visit(steps, before, stepThen, beside, last); }
+
+private:
     yade::Vector3r gravityIn(double dt) {
         if (dt != stepThen) {
             before += double(steps) * stepThen;
@@ -36,8 +46,6 @@ struct GroundMotion {
         }
         return now;
     }
-
-    template <class Visit> void visitState(Visit&& visit) { visit(steps, before, stepThen); }
 };
 
 } // namespace masonry

@@ -455,13 +455,14 @@ void Contacts::measureJoints(const SceneContents& contents) {
 }
 
 // The bounds are derived in contact/README.md.
-void Contacts::boundPairs(const SceneContents& contents, double damping) {
-    if (!unbounded_ && damping_ == damping) return;
-    damping_ = damping;
+void Contacts::boundPairs(const SceneContents& contents, double damping, bool anew) {
+    const double tangential = tangentialRatio * normalStiffness;
+    const std::array<double, 3> now{damping, normalStiffness, tangential};
+    if (!anew && !unbounded_ && boundFor_ == now) return;
+    boundFor_ = now;
     prepare(contents);
     turnBlocks(contents);
     if (measuredRevision_ != contents.stiffnessRevision()) measureJoints(contents);
-    const double tangential = tangentialRatio * normalStiffness;
     std::map<int, BlockStiffness> found;
     const auto at = [&](int body) -> auto& {
         return found.emplace(body, BlockStiffness(BlockStiffness::Zero())).first->second;
@@ -474,7 +475,7 @@ void Contacts::boundPairs(const SceneContents& contents, double damping) {
         for (const auto& [body, stiffness] : found) {
             if (isHeld(contents, body)) continue;
             const auto own = bodyOf(contents, body);
-            const double factor = contents.bodies.isDamped(body) ? 1 + damping_ : 1;
+            const double factor = contents.bodies.isDamped(body) ? 1 + damping : 1;
             most = std::max(most, factor * largestEigenvalueOf(stiffness, own));
         }
         return most;
@@ -539,9 +540,9 @@ int Contacts::touching() const {
 }
 
 Vector3r Contacts::forceOf(int id1, int id2) const {
-    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
-            return pairs_[p].other == id2 ? effects_[p].wrench.force : Vector3r(-effects_[p].wrench.force);
+    for (const auto& of : pairForces())
+        if (std::minmax(id1, id2) == std::minmax(of.one, of.other))
+            return of.other == id2 ? of.force : Vector3r(-of.force);
     return Vector3r::Zero();
 }
 
@@ -553,7 +554,7 @@ Vector3r Contacts::impulseOn(int body) const {
 void Contacts::visitState(StateNumbers& n) {
     std::vector<int> awake(awake_.begin(), awake_.end());
     effects_.resize(pairs_.size());
-    n(awake, changes_, pairs_, effects_, impulses_, placed_, usedSkin_, unbounded_, ofPairs_, ofAll_, damping_,
+    n(awake, changes_, pairs_, effects_, impulses_, placed_, usedSkin_, unbounded_, ofPairs_, ofAll_, boundFor_,
       jointEigenvalue, stepShare);
     if (!n.back) return;
     if (effects_.size() != pairs_.size()) n.refuse();

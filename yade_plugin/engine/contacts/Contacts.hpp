@@ -59,8 +59,8 @@ public:
     Vector3r impulseOn(int body) const;
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
-    // Finds the bounds for the present pairs, if others were looked for since.
-    void boundPairs(const SceneContents&, double damping);
+    // Finds the bounds for the present pairs, `anew` or if pairs were looked for or stiffness has changed since.
+    void boundPairs(const SceneContents&, double damping, bool anew = false);
     // Bound of the largest eigenvalue of stiffness over mass [1/s²] of joints, whose own is given, and contacts: those
     // of boundPairs() if the time step follows the state, else all that may ever come. Damped masses are divided by
     // 1 + damping.
@@ -151,9 +151,10 @@ private:
     // Bound for any contacts that may come, and what it was found for.
     double embedded_ = 0, boundStiffness_ = -1, boundRatio_ = -1;
     long boundRevision_ = -1;
-    // Bounds for the present pairs, of contacts alone and with all joints that were not handed over; and the constant
-    // of numerical damping in them.
-    double ofPairs_ = 0, ofAll_ = 0, damping_ = 0;
+    // Bounds for the present pairs, of contacts alone and with all joints that were not handed over; and for which
+    // numerical damping and stiffnesses.
+    double ofPairs_ = 0, ofAll_ = 0;
+    std::array<double, 3> boundFor_ = {};
     bool unbounded_ = true;              // whether these must be found
     long measuredRevision_ = -1;         // SceneContents::stiffnessRevision() of `shares_`
     std::vector<JointShare> shares_;     // of all joints between rigid bodies

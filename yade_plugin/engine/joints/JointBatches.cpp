@@ -61,7 +61,8 @@ bool JointBatches::liesInPlane(const SceneContents& store) const {
                 return false;
         }
         for (int p = 0; p < joint.geom->points(); ++p) {
-            const double elastic = joint.phys->state(p).shearStress.b / joint.phys->stiffness().shear;
+            const double elastic =
+                *joint.phys->group->columns->shearStressB(p, joint.phys->index) / joint.phys->stiffness().shear;
             if (!(std::abs(elastic) + std::abs(joint.geom->jump(p)[2]) < outOfPlaneTolerance)) return false;
         }
     }

@@ -4,9 +4,7 @@
 #include "common/Text.hpp"
 #include <Eigen/Dense>
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <set>
 
 namespace masonry {
 
@@ -85,36 +83,39 @@ std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
     const auto between = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
     const auto search = [&] {
         found.clear();
-        for (int i = 0; i < count; ++i) {
+        const auto isNear = [&](std::size_t n) { return n < order.size() && fits(distances[order[n]]); };
+        for (std::size_t i = 0; isNear(i); ++i) {
             const int a = order[i];
-            if (!fits(distances[a])) continue;
             const Vector3r there = place - points[a].offset;
-            for (int j = i + 1; j < count; ++j) {
+            for (std::size_t j = i + 1; isNear(j); ++j) {
                 const int b = order[j];
                 const Vector3r ab = between(a, b);
-                if (!fits(distances[b]) || !fits(ab.squaredNorm())) continue;
+                if (!fits(ab.squaredNorm())) continue;
                 if (row) {
                     const double t = there.dot(ab) / ab.squaredNorm();
                     take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
                     continue;
                 }
-                for (int k = j + 1; k < count; ++k) {
+                for (std::size_t k = j + 1; isNear(k); ++k) {
                     const int c = order[k];
                     const Vector3r ac = between(a, c);
-                    if (!fits(distances[c]) || !fits(ac.squaredNorm())) continue;
-                    const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
-                    if (std::abs(area) <= 1e-6 * size) continue;
+                    if (!fits(ac.squaredNorm())) continue;
+                    const double sides = ab.squaredNorm() + ac.squaredNorm();
+                    const double size = sides + between(b, c).squaredNorm(), area = ab.cross(ac)[0];
+                    if (size > smallest * (1 + 1e-6) || std::abs(area) <= 1e-6 * sides) continue;
                     const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
-                    take(size + between(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+                    take(size, {{a, 1 - u - v}, {b, u}, {c, v}});
                 }
             }
         }
     };
-    // The first search begins with the nearest points and finds the smallest size; the second one takes the points in
-    // their own order, in which weights are summed.
+    // The first search begins with the nearest points and finds the smallest size; the second one takes those that are
+    // near enough in their own order, in which weights are summed.
     std::sort(order.begin(), order.end(), [&](int a, int b) { return distances[a] < distances[b]; });
     search();
-    std::iota(order.begin(), order.end(), 0);
+    order.erase(std::partition_point(order.begin(), order.end(), [&](int p) { return fits(distances[p]); }),
+                order.end());
+    std::sort(order.begin(), order.end());
     search();
     std::vector<double> weights(count, 0.0);
     for (const auto& shares : found)
@@ -330,19 +331,17 @@ bool Refinement::Limit::yields(double sigma, double a, double b) const {
 }
 
 // Whether a point of a joint has lost bond.
-bool Refinement::hasCracked(const JointKind& kind, int j) {
-    const auto& columns = *kind.states->columns.unsynchronised();
-    for (int p = 0; p < kind.shapes->points && kind.shapes->pointwise[j]; ++p)
-        if (const double* damage = columns.column(Role::BondDamage, p, j); damage && *damage > 0) return true;
+bool Refinement::hasCracked(const JointShapes& shapes, int j) {
+    for (int p = 0; p < shapes.points && shapes.pointwise[j]; ++p)
+        if (const double* damage = shapes.law->column(Role::BondDamage, p, j); damage && *damage > 0) return true;
     return false;
 }
 
 // Points of a joint that has reached this part of what opens it, if its bed is compliant.
 PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& kind, const Limit& limit, double part,
                                         int j) {
-    if (!limit.dry() && !hasCracked(kind, j)) return {};
     const auto& shapes = *kind.shapes;
-    if (bridged_.count(shapes.joints[j].corners.get())) return {};
+    if (!limit.dry() && !hasCracked(shapes, j)) return {};
     const auto& columns = *kind.states->columns.unsynchronised();
     const double k = columns.stiffness().normal;
     const auto stressAt = [&](int p) {
@@ -377,6 +376,7 @@ PointCounts Refinement::countsIfOpening(SceneContents& store, const JointKind& k
     };
     // The section is at least as wide as the joint, and its width takes a search among all joints.
     if (!points_ && !isEstimated && !leansOver(ownExtentOf(r, axis))) return {};
+    if (limit.dry() && isBridged(r)) return {};
     const double width = widthOf(store, r, axis);
     if (!limit.opened().along || (!points_ && !leansOver(width))) {
         auto& estimate = store.loop->overestimate;
@@ -416,15 +416,17 @@ double Refinement::widthOf(const SceneContents& store, const JointReference& r, 
     const double gap = 0.1 * own.sizes()[axis], apart = 0.5 * r.span()[0];
     const int other = 3 - axis;
     std::vector<std::pair<double, double>> beside; // stretches along the axis
-    for (const auto& joint : store.joints) {
-        const auto& that = joint.geom->reference();
+    for (std::size_t n = 0; n < places_.size(); ++n) {
+        const auto& that = places_[n];
         const double parallel = std::abs(that.normal.dot(r.normal));
         if (parallel < leastParallel) continue;
         for (const auto& side : r.sides)
-            for (const auto& body : {that.sides[0].body, that.sides[1].body})
+            for (int body : that.bodies)
                 if (side.body == body && partOf_[body] >= 0 && parallel < parallelBeds)
                     return widths_[place] = extentOf(r, axis);
-        const auto box = boxOf(that.polygon());
+        const double rise = 1.001 * apart + 0.5 * that.box.sizes().dot(r.normal.cwiseAbs());
+        if (std::abs((that.box.center() - r.polygon()[0]).dot(r.normal)) > rise) continue; // far, whatever its corners
+        const auto box = boxOf(store.joints[n].geom->reference().polygon());
         const double common =
             std::min(box.max()[other], own.max()[other]) - std::max(box.min()[other], own.min()[other]);
         if (std::abs(box.center()[0] - own.center()[0]) < apart && common > close * own.sizes()[other])
@@ -464,36 +466,36 @@ void Refinement::readParts(const SceneContents& store) {
                 sizes_[part].extend(corner);
         }
     widths_.clear();
-    findBridged(store);
+    places_.clear();
+    bonds_.assign(roots.size(), {});
+    for (const auto& joint : store.joints) {
+        const auto& r = joint.geom->reference();
+        const auto& p = joint.phys->law().properties();
+        for (int side = 0; side < 2 && (p.tensileStrength > 0 || p.cohesion > 0); ++side)
+            bonds_[r.sides[side].body].emplace_back(r.sides[1 - side].body, joint.geom.get());
+        places_.push_back({r.normal, {}, {r.sides[0].body, r.sides[1].body}});
+        for (const auto& corner : r.polygon())
+            places_.back().box.extend(corner);
+    }
     stiffnessRevision_ = store.stiffnessRevision();
 }
 
-// Finds dry joints whose blocks are both bonded to a third one, or to two that are bonded to each other, as the halves
-// of a brick: head joints without bond turn with bonded beds.
-void Refinement::findBridged(const SceneContents& store) {
-    const auto isDry = [](const JointView& joint) {
-        const auto& p = joint.phys->group->columns.unsynchronised()->law().properties();
-        return !(p.tensileStrength > 0 || p.cohesion > 0);
+// Whether both blocks of a dry joint are bonded to a third one, or to two that are bonded to each other, as the halves
+// of a brick: head joints without bond turn with bonded beds. Bonds that have cracked do not count.
+bool Refinement::isBridged(const JointReference& r) const {
+    const auto bondedTo = [&](int body) {
+        std::set<int> all;
+        for (const auto& [other, bond] : bonds_[body])
+            if (!bond->converted() && !hasCracked(*bond->group, bond->index)) all.insert(other);
+        return all;
     };
-    std::map<int, std::set<int>> bonded; // blocks at each block
-    for (const auto& joint : store.joints) {
-        const auto& sides = joint.geom->reference().sides;
-        if (isDry(joint)) continue;
-        bonded[sides[0].body].insert(sides[1].body);
-        bonded[sides[1].body].insert(sides[0].body);
-    }
-    bridged_.clear();
-    for (const auto& joint : store.joints) {
-        const auto& r = joint.geom->reference();
-        if (!isDry(joint)) continue;
-        const auto &one = bonded[r.sides[0].body], &other = bonded[r.sides[1].body];
-        const auto holdsOther = [&](int body) {
-            const auto& next = bonded[body];
-            return other.count(body) > 0 ||
-                   std::any_of(next.begin(), next.end(), [&](int half) { return other.count(half) > 0; });
-        };
-        if (std::any_of(one.begin(), one.end(), holdsOther)) bridged_.insert(r.corners.get());
-    }
+    const auto other = bondedTo(r.sides[1].body);
+    const auto isOfOther = [&](int body) { return other.count(body) > 0; };
+    const auto one = bondedTo(r.sides[0].body);
+    return std::any_of(one.begin(), one.end(), [&](int body) {
+        const auto next = bondedTo(body);
+        return isOfOther(body) || std::any_of(next.begin(), next.end(), isOfOther);
+    });
 }
 
 // Whether a point of a joint has reached this part of the limit, or was beyond it already.
@@ -560,6 +562,7 @@ bool Refinement::look(SceneContents& store) {
     if (!any) return false;
     const auto add = [](Changed& to, double sign) {
         const auto& geom = *to.joint.geom;
+        to.forces.reserve(to.forces.size() + geom.points());
         for (int p = 0; p < geom.points(); ++p) {
             const auto s = to.joint.phys->state(p);
             const Vector3r stress =

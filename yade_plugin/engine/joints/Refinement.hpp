@@ -77,11 +77,11 @@ private:
     };
     void readLimits(const SceneContents&);
     bool yields(const JointKind&, const Limit&, double part, int joint) const;
-    static bool hasCracked(const JointKind&, int joint);
+    static bool hasCracked(const JointShapes&, int joint);
     PointCounts countsIfOpening(SceneContents&, const JointKind&, const Limit&, double part, int joint);
     PointCounts countsIfDue(SceneContents&, const JointKind&, const Limit&, double part, int joint);
     void readParts(const SceneContents&);
-    void findBridged(const SceneContents&);
+    bool isBridged(const JointReference&) const;
     double extentOf(const JointReference&, int axis) const;
     double widthOf(const SceneContents&, const JointReference&, int axis);
 
@@ -103,8 +103,14 @@ private:
     std::vector<int> partOf_;                                 // part of each body, -1 if it is held
     std::map<int, Eigen::AlignedBox3d> sizes_;                // around the joints of each part
     std::map<std::pair<const Polygon*, int>, double> widths_; // see widthOf(), by the joint and the axis
-    std::set<const Polygon*> bridged_;                        // see findBridged(), by the joint
-    long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these four were read
+    std::vector<std::vector<std::pair<int, const JointGeometry*>>> bonds_; // of each body with others
+    struct Place {                                                         // of a joint
+        Vector3r normal;
+        Eigen::AlignedBox3d box;
+        int bodies[2];
+    };
+    std::vector<Place> places_;   // of the store's joints, side by side in memory for widthOf()
+    long stiffnessRevision_ = -1; // SceneContents::stiffnessRevision() for which these five were read
 };
 
 } // namespace masonry

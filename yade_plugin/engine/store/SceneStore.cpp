@@ -48,6 +48,11 @@ std::string valuesOf(const JointProperties& properties) {
     return bytes;
 }
 
+long newRevision() {
+    static long readings = 0;
+    return ++readings;
+}
+
 // Whether the bodies of a scene still have the State objects that were read.
 bool sameStates(const yade::Scene& scene, const BodyColumns& bodies) {
     for (const auto& body : scene.bodies->body)
@@ -120,8 +125,7 @@ void SceneStore::opened() {
     place_ = engines_.size();
     endsWith.reset();
     readForeignForces();
-    if (integrator && !integrator->shaking.samples.empty())
-        integrator->gravity = integrator->shaking.gravityIn(scene_.dt);
+    if (integrator && !integrator->shaking.samples.empty()) integrator->shaking.act(scene_.dt, integrator->gravity);
 }
 
 void SceneStore::readEngines() {
@@ -242,8 +246,7 @@ void SceneStore::update(ScanScope scope) {
         for (int id : zones->bodies)
             if (id >= 0 && id < bodies.size()) bodies.isUnit[id] = true;
     if (zones) zones->takeBricks(bricksOf(joints));
-    static long readings = 0;
-    revision_ = stiffnessRevision_ = ++readings;
+    revision_ = stiffnessRevision_ = newRevision();
     seenChanges_ = changes;
     seenInteractions_ = scene_.interactions->currSize;
 }
@@ -256,29 +259,13 @@ void SceneStore::gather() {
 }
 
 void SceneStore::pointsChanged() {
-    const bool same = sameJoints();
-    const long before = stiffnessRevision_;
-    ++changes;
-    update(ScanScope::Joints);
-    if (same) stiffnessRevision_ = before;
+    if (!sameJoints()) return update(ScanScope::Joints);
+    const WithInterpreter python;
+    groupJoints(std::move(joints), true);
+    revision_ = newRevision();
 }
 
-// Moves all joints into common groups, one for each kind. Within a kind they keep the order of the host's container.
 void SceneStore::readJoints() {
-    struct Group {
-        ElasticStiffness k;
-        std::vector<std::size_t> members;
-    };
-    std::map<std::string, int> sets; // number of every set of values
-    std::map<const PropertySet*, int> setOf;
-    const auto setNumber = [&](const PropertySet* joint) {
-        const auto [at, fresh] = setOf.emplace(joint, 0);
-        if (fresh) at->second = sets.emplace(valuesOf(*joint), int(sets.size())).first->second;
-        return at->second;
-    };
-    using Key = std::tuple<int, int, bool>;
-    std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
-    std::vector<Group> groups;
     std::vector<JointView> found;
     found.reserve(scene_.interactions->currSize);
     const Zones* zonesOfJoints = nullptr;
@@ -296,8 +283,37 @@ void SceneStore::readJoints() {
             throw std::invalid_argument("the joints of a scene can belong to one " + nameOf(ClassRole::Units) +
                                         " only");
         if (attached) zonesOfJoints = attached->zones.get();
+        found.push_back({&interaction, geom, phys});
+    }
+    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or of which only
+    // one half is left. With one of the latter the old groups stay readable, and checkScene() reports it.
+    for (auto& kind : kinds)
+        kind.shapes->left = kind.states->left = !broken;
+    groupJoints(std::move(found), false);
+}
+
+// Moves joints into common groups, one for each kind. Within a kind they keep the order of the host's container. If
+// nothing but points has changed, a group that keeps its joints stays as it is.
+void SceneStore::groupJoints(std::vector<JointView> found, bool sameProperties) {
+    struct Group {
+        ElasticStiffness k;
+        std::vector<std::size_t> members;
+    };
+    std::map<std::string, int> sets; // number of every set of values
+    std::map<const PropertySet*, int> setOf;
+    const auto setNumber = [&](const PropertySet* joint) {
+        const auto [at, fresh] = setOf.emplace(joint, 0);
+        if (fresh) at->second = sets.emplace(valuesOf(*joint), int(sets.size())).first->second;
+        return at->second;
+    };
+    using Key = std::tuple<int, int, bool>;
+    std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
+    std::vector<Group> groups;
+    for (std::size_t n = 0; n < found.size(); ++n) {
+        const auto& [interaction, geom, phys] = found[n];
         const auto& k = phys->stiffness();
-        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached != nullptr}];
+        const bool attached = geom->reference().attached != nullptr;
+        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached}];
         auto at = alike.lower_bound(k.normal * (1 - 2e-12));
         const auto fits = [&](std::size_t group) {
             return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
@@ -309,14 +325,22 @@ void SceneStore::readJoints() {
             at = alike.emplace(k.normal, groups.size());
             groups.push_back({k, {}});
         }
-        groups[at->second].members.push_back(found.size());
-        found.push_back({&interaction, geom, phys});
+        groups[at->second].members.push_back(n);
     }
 
     std::vector<JointKind> made;
     for (const auto& group : groups) {
         const auto& first = found[group.members[0]];
         const int count = int(group.members.size()), points = first.geom->points();
+        const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const JointKind& kind) {
+            return sameProperties && kind.shapes == first.geom->group && int(kind.shapes->joints.size()) == count;
+        });
+        if (known != kinds.end() && std::all_of(group.members.begin(), group.members.end(),
+                                                [&](std::size_t n) { return found[n].geom->group == known->shapes; })) {
+            made.push_back(*known);
+            kinds.erase(known);
+            continue;
+        }
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
                        shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
                        first.geom->reference().attached != nullptr};
@@ -327,23 +351,21 @@ void SceneStore::readJoints() {
             group->scene = life_;
             group->inScene = true;
         }
-        bool known = false;
+        bool wereThere = false;
         for (int j = 0; j < count; ++j) {
             const auto& joint = found[group.members[j]];
-            known = known || (joint.geom->group->inScene && !joint.geom->refined().coarse);
+            wereThere = wereThere || (joint.geom->group->inScene && !joint.geom->refined().coarse);
             kind.shapes->take(j, *joint.geom->group, joint.geom->index);
             kind.states->take(j, *joint.phys->group, joint.phys->index);
             joint.geom->group = kind.shapes;
             joint.phys->group = kind.states;
             joint.geom->index = joint.phys->index = j;
         }
-        kind.shapes->shareShapes(known);
+        kind.shapes->shareShapes(wereThere);
         made.push_back(kind);
     }
-    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or of which only
-    // one half is left. With one of the latter the old groups stay readable, and checkScene() reports it.
     for (auto& kind : kinds)
-        kind.shapes->left = kind.states->left = !broken;
+        kind.shapes->left = kind.states->left = kind.shapes->left || sameProperties;
     kinds = std::move(made);
     joints = std::move(found);
 }

@@ -86,6 +86,7 @@ private:
     void readEngines();
     void readForeignForces();
     void readJoints();
+    void groupJoints(std::vector<JointView>, bool sameProperties);
 
     boost::weak_ptr<yade::Factorable> life_;
     long seenChanges_ = -1;                                     // value of `changes` when the joints were last read

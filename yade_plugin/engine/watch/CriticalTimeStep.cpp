@@ -73,13 +73,16 @@ double timeStepLimit(SceneStore& store, bool anew) {
 }
 
 static void changeTimeStep(SceneStore& store, double dt) {
+    if (!(dt < HUGE_VAL)) return; // no joint and no pair has stiffness yet
     if (store.integrator) store.integrator->stepChange = dt - store.scene().dt;
     store.scene().dt = dt;
 }
 
 void beginFollowing(SceneStore& store) {
+    for (int b = 0; b < store.bodies.size(); ++b)
+        if (store.bodies.has(b)) store.bodies.detectAnyChange(b);
     for (auto* one : store.contacts)
-        one->boundPairs(store, store.damping());
+        one->boundPairs(store, store.damping(), true);
     const double limit = timeStepLimit(store, true);
     for (auto* one : store.contacts) {
         one->jointEigenvalue = store.kept<KnownEigenvalue>().value;
@@ -121,8 +124,12 @@ std::string describedLimit(SceneStore& store) {
     std::string name;
     for (const auto& joint : store.joints)
         if (joint.interaction->id1 == id1 && joint.interaction->id2 == id2) name = joint.phys->propertySet()->name;
-    if (name.empty() && id2 == Connectors::ground)
-        return what + "the connector of body " + std::to_string(id1) + " to the ground sets";
+    const auto isMachine = [&](const Load* load) { return load->body == id1 && !load->machineStiffness().isZero(0); };
+    if (id2 == Connectors::ground)
+        return what + "the " +
+               (std::any_of(store.loads.begin(), store.loads.end(), isMachine) ? "testing machine at body "
+                                                                               : "connector to the ground of body ") +
+               std::to_string(id1) + " sets";
     if (name.empty())
         return what + "the connector of bodies " + std::to_string(id1) + " and " + std::to_string(id2) + " sets";
     return what + "joint \"" + name + "\" between bodies " + std::to_string(id1) + " and " + std::to_string(id2) +

@@ -147,19 +147,26 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     const SideBySide all{columns_.from(first), jumps, regime, pending, count, normalStress};
     const auto rest = stayElastic(equations_, yielded ? nullptr : &neverYielded_, all);
     Mask left = rest.all;
-    if (rest.open != 0) left -= slideOpen(equations_, law_->tension(), law_->shear(), all);
+    int begin = 0, end = count; // the groups of eight from the first to the last that are pending
+    const auto narrow = [&] {
+        while (!pending[begin])
+            ++begin;
+        while (!pending[end - 1])
+            --end;
+        begin = begin / lanes * lanes;
+        end = std::min((end - 1) / lanes * lanes + lanes, count);
+    };
+    if (left != 0 && rest.open != 0) {
+        narrow();
+        left -= slideOpen(equations_, law_->tension(), law_->shear(), all.part(begin, end));
+    }
     if (left == 0) return;
-
-    int begin = int(std::find(pending, pending + count, 1) - pending), end = count; // those that need the whole law
-    while (!pending[end - 1])
-        --end;
-    if (LawType::fasterOneByOne(int(left), (end - 1) / lanes - begin / lanes + 1)) {
+    narrow();
+    if (LawType::fasterOneByOne(int(left), (end - begin + lanes - 1) / lanes)) {
         for (int i = begin; i < end; ++i)
             if (pending[i]) normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
         return;
     }
-    begin = begin / lanes * lanes;
-    end = std::min((end - 1) / lanes * lanes + lanes, count);
     for (int n = begin; n < end; n += lanes)
         yieldFrom(point, from + n);
     advanceSideBySide(equations_, law_->tension(), law_->shear(), &rows_[first + begin], all.part(begin, end));
