@@ -2,8 +2,8 @@
 """What the runs of the walls of bricks say beside the 17 tests, and predictions of all 52;
 README.md says how each number is defined.
 
-/usr/bin/python3 validation/brick_walls/compare.py choose results/brick_walls/choose
-/usr/bin/python3 validation/brick_walls/compare.py predict results/brick_walls/push
+/usr/bin/python3 validation/brick_walls/compare.py choose results/validation/brick_walls/choose
+/usr/bin/python3 validation/brick_walls/compare.py predict results/validation/brick_walls/push
 
 The first prints a table of the rules and what leaving out one campaign says of them; the second
 prints what the predictions say of the 17, and writes predictions.csv where there is none.
@@ -22,11 +22,15 @@ import numpy as np
 import results
 from masonry.numbers.files import readCurve
 
+sys.path.insert(0, os.path.dirname(assumed.HERE))
+import studies
+
 PREDICTIONS = os.path.join(assumed.HERE, "predictions.csv")  # made blind; stays as it is
 SHARES = 0.8, 0.9  # of the strength in flexure, from which a wall does not fail in shear [-]
 CHOSEN = SHARES[0]
 KEPT = 1.99  # drift at which a push ended that kept its force [%]
 NAMES = "peak", "stiffness", "bilinear", "atPeak", "ultimate"
+COMPARED = [*NAMES, "stiffness, E measured", *(f"modes right, share {s}" for s in SHARES)]
 HEADS = "peak_kN", "stiffness_kN_per_mm", "Vbil_kN", "drift_peak_percent", "drift_ultimate_percent"
 LETTERS = {"flexure": "F", "shear": "S", "sliding": "S"}
 
@@ -128,23 +132,21 @@ def choose(folder):
     """Print how each rule does, and which one the walls of all but one campaign would choose."""
     tests, walls = measured(), assumed.read()
     found = {r: of for r, of in runs(folder).items() if set(of) >= set(tests)}
-    print(f"| rule | {' | '.join(NAMES)} | stiffness, E measured | modes, {SHARES} |")
-    for rule, of in found.items():
-        print(f"| {rule} | {' | '.join(map(str, compared(of, tests)))} |")
+    rows = [[rule, *compared(of, tests)] for rule, of in found.items()]
     for rule, prediction in said(tests).items():
-        ratios = [prediction[w].peak / tests[w]["peak"] for w in tests]
+        mean, cov = results.spread([prediction[w].peak / tests[w]["peak"] for w in tests])
         right = sum(LETTERS[prediction[w].failure] == tests[w]["mode"] for w in tests)
-        mean, cov = results.spread(ratios)
-        print(f"| {rule} | {mean:.2f} ({100 * cov:.0f} %) | modes right {right} |")
-    print("coefficient of variation of peaks, all and without one campaign:")
-    campaigns = sorted({walls[w].campaign for w in tests})
+        rows.append([rule, f"{mean:.2f} ({100 * cov:.0f} %)", *[""] * len(NAMES), right, ""])
+    print(studies.table(["rule", *COMPARED], rows), end="\n\n")
+    campaigns, rows = sorted({walls[w].campaign for w in tests}), []
     for rule, of in found.items():
         without = [
             scatter(of, {w: t for w, t in tests.items() if walls[w].campaign != one})
             for one in campaigns
         ]
-        print(rule, f"{scatter(of, tests):.1f};", " ".join(f"{one:.1f}" for one in without))
-    print("campaigns:", ", ".join(campaigns))
+        rows.append([rule, *(f"{one:.1f}" for one in (scatter(of, tests), *without))])
+    heads = ["scatter of peaks %", "all", *(f"without {one}" for one in campaigns)]
+    print(studies.table(heads, rows))
     for wall, own in tests.items():
         ratios = [f"{of[wall]['peak'] / own['peak']:.2f}" for of in found.values()]
         mode = modeOf(found["base"][wall], walls[wall])
@@ -195,8 +197,10 @@ def predict(folder):
     if not os.path.exists(PREDICTIONS):
         with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
             csv.writer(f, lineterminator="\n").writerows([head, *lines])
-    print(NAMES, *compared(made, tests), "held", held)
-    print({name: f"{math.exp(m):.2f}, {s:.2f}" for name, (m, s) in error.items()})
+    print(studies.table(COMPARED, [compared(made, tests)]), end="\n\n")
+    rows = [[n, f"{math.exp(m):.2f}", f"{s:.2f}", held[n]] for n, (m, s) in error.items()]
+    heads = "number, measured over predicted, deviation of its logarithm, intervals that hold"
+    print(studies.table(heads.split(", "), rows))
 
 
 if __name__ == "__main__":

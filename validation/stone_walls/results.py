@@ -2,13 +2,12 @@
 """What the runs of the stone walls say, and what was measured; README.md says how each number is
 defined.
 
-/usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose
-/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/{push,cycles}
+/usr/bin/python3 validation/stone_walls/results.py results/validation/stone_walls/{push,cycles}
 /usr/bin/python3 validation/stone_walls/results.py --opened
 
-The first compares the eight combinations of rules; the second writes table.md;
-the third compares predictions.csv with the 57 walls whose results came afterwards, in opened.md.
-The second writes predictions.csv only where there is none: it stays as it was made blind.
+The first writes table.md; the second compares predictions.csv with the 57 walls whose results came
+afterwards, in opened.md. The first writes predictions.csv only where there is none: it stays as it
+was made blind.
 """
 
 import argparse
@@ -166,26 +165,6 @@ def spread(ratios):
     ratios = [one for one in ratios if not math.isnan(one)]
     mean = fmean(ratios)
     return mean, (stdev(ratios) / mean if len(ratios) > 1 else math.nan)
-
-
-def choose(folder):
-    """Print how each combination of rules does on the walls with results."""
-    tests, found = measured(), {}
-    for values, numbers in runs(folder):
-        key = values["bond"], values["stiffness"]
-        found.setdefault(key, {})[values["wall"]] = numbers
-    print(
-        "| bond | stiffness | walls | peak | effective stiffness | initial stiffness | ultimate"
-        " drift | failure right |"
-    )
-    print("|---|---|---|---|---|---|---|---|")
-    for (bond, stiffness), of in found.items():
-        cells = []
-        for name in ("peak", "effective", "elastic", "ultimate"):
-            mean, cov = spread([getattr(n, name) / tests[w][name] for w, n in of.items()])
-            cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
-        right = sum(n.failure(w) == tests[w]["failure"] for w, n in of.items())
-        print(f"| {bond} | {stiffness} | {len(of)} | {' | '.join(cells)} | {right} |")
 
 
 # -- predictions -----------------------------------------------------------------------------------
@@ -472,15 +451,12 @@ def _afterwards(made, tests):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--choose", metavar="STUDY")
     parser.add_argument("--opened", action="store_true")
     parser.add_argument("studies", nargs="*", help="of push.py and of cycles.py")
     args = parser.parse_args()
     if args.opened:
         with open(os.path.join(HERE, "opened.md"), "w", encoding="utf-8") as f:
             f.write("".join(line + "\n" for line in opened()))
-    if args.choose:
-        choose(args.choose)
     if args.studies:
         made = predictions(*args.studies)
         if not os.path.exists(PREDICTIONS):
