@@ -19,7 +19,7 @@ the date and the time of a core of each; git has the references of that commit.
 Each result takes one core; the longest begin first. What fails or is stopped goes on with the same
 command, and the others are made meanwhile. results/remake/NAME.log has what a result printed; its
 tables replace those between the marks <!-- NAME: begin --> and <!-- NAME: end --> of the README of
-its folder, if they are there. Other text that quotes numbers is checked by
+its folder, one after another, if they are there. Other text that quotes numbers is checked by
 tests/package/test_quoted.py. Runs that an older state of the code has left in results/ are removed
 before a result is made, since studies take what is there.
 """
@@ -107,7 +107,7 @@ CASE_MINUTES = {
     "dry_joint_walls/deformable*": 4,
 }
 #: Cases whose runs are made by programs of their own.
-OWN = {"cyclic", "trade", "convergence"}
+OWN = {"cyclic", "trade"}
 
 
 def ofCases():
@@ -243,17 +243,9 @@ STUDIES = (
     (
         "cyclic/walls",
         ["cyclic/walls.py"],
-        12,
+        6,
         "rc",
         "cyclic/walls.md cyclic/loops_*.png cyclic/degradation.png",
-        "scripts/wall_comp*.py",
-    ),
-    (
-        "convergence",
-        ["convergence/converge.py"],
-        15,
-        "d",
-        "convergence/curves.png",
         "scripts/wall_comp*.py",
     ),
     (
@@ -388,7 +380,6 @@ RUNS = {
     "dry_joint_walls/reversals": ["reversals"],
     "cyclic/joint": ["joint"],
     "cyclic/walls": ["comp*"],
-    "convergence": [""],
     "trade": [""],
     "accuracy": [""],
     "sensitivity": ["COMP-*"],
@@ -667,16 +658,26 @@ def ages(every):
     return studies.table(heads, [*cells, ["all", "", "", "", "", f"{total:.0f}"]])
 
 
-def put(text, name, content):
-    """A document with other content between the marks of a name, if it has them."""
+def put(text, name, tables):
+    """A document with other tables between the marks of a name: one between each pair of marks,
+    between the last pair all that are left."""
     begin, end = (re.escape(f"<!-- {name}: {word} -->") for word in ("begin", "end"))
-    return re.sub(f"(?<={begin}\n).*?(?={end})", lambda _: content + "\n", text, flags=re.DOTALL)
+    marks = re.compile(f"(?<={begin}\n).*?(?={end})", re.DOTALL)
+    left, places = list(tables), len(marks.findall(text))
+
+    def one(found):
+        nonlocal places
+        places -= 1
+        mine = [left.pop(0)] if places else left
+        return "\n".join(mine)
+
+    return marks.sub(one, text)
 
 
-def _write(path, name, content):
+def _write(path, name, tables):
     with open(path) as file:
         text = file.read()
-    new = put(text, name, content)
+    new = put(text, name, tables)
     if new != text:
         with open(path, "w") as file:
             file.write(new)
@@ -684,7 +685,7 @@ def _write(path, name, content):
 
 def writeAges(every):
     """Write the table of ages into validation/README.md."""
-    _write(os.path.join(HERE, README), OWN_MARK, ages(every))
+    _write(os.path.join(HERE, README), OWN_MARK, [ages(every) + "\n"])
 
 
 def writeTables(name):
@@ -693,7 +694,7 @@ def writeTables(name):
         tables = re.findall(r"(?:^\|.*\|\n)+", file.read(), re.MULTILINE)
     path = os.path.join(HERE, name.split("/")[0], README)
     if tables and os.path.exists(path):
-        _write(path, name, "\n".join(tables).strip())
+        _write(path, name, tables)
 
 
 def main(words=None):

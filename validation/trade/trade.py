@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The price of speed: errors of the four walls against time, by block model, mesh and rate.
+"""The price of speed: errors of the four walls against time, by block model, mesh, rate, damping.
 
 /usr/bin/python3 validation/trade/trade.py [--draw]
 
@@ -16,7 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from masonry.numbers.cracks import CRACK, layOut
-from masonry.numbers.files import readCurve, readRun
+from masonry.numbers.files import readRun
 from masonry.numbers.frames import readFrame
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -25,8 +25,9 @@ import studies
 
 #: Walls and how far they are pushed [mm].
 WALLS = {"wall_comp0a": 30, "wall_comp1": 30, "wall_comp4": 12, "wall_comp6": 16}
-_TWO = "--blocks deformable --divisions 2 --rate"
 _SCALED = "--mass-scaling auto"
+_ONE = f"--blocks deformable --rate 50 {_SCALED}"
+_TWO = "--blocks deformable --divisions 2 --rate"
 
 REFERENCE = f"--blocks deformable --divisions 3 --rate 20 {_SCALED}"
 #: What is compared with the reference, and its options; all others have their defaults.
@@ -35,10 +36,13 @@ RUNS = {
     "rigid, 50 mm/s": "--rate 50",
     "rigid, 100 mm/s: preset fast": "--preset fast",
     "rigid, 200 mm/s": "--rate 200",
-    "one cell, 50 mm/s": f"--blocks deformable --rate 50 {_SCALED}",
+    "one cell, 50 mm/s": _ONE,
+    "the same, combined damping of 0.4": f"{_ONE} --damping 0.4",
+    "the same, local damping": f"{_ONE} --damping-kind local",
+    "the same, time step 0.95 of its limit": f"{_ONE} --dt-fraction 0.95",
     "one cell, 100 mm/s": f"--blocks deformable --rate 100 {_SCALED}",
     "two by two cells, 50 mm/s: preset accurate": "--preset accurate",
-    "the same, true masses": f"{_TWO} 50",
+    "two by two cells, 50 mm/s, true masses": f"{_TWO} 50",
     "two by two cells, 100 mm/s": f"{_TWO} 100 {_SCALED}",
 }
 #: Limit analysis alone: a bound of the peak, without a run.
