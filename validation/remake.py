@@ -165,6 +165,8 @@ def command(text):
     return words(first, *more)
 
 
+#: Studies of random fields.
+FIELDS = "one_metre", "one_brick"
 #: Walls of stone whose crack patterns are drawn.
 CRACKED = "5 13 22 50 120".split()
 _CRACKS = "results/validation/stone_walls/cracks/"
@@ -272,16 +274,16 @@ STUDIES = (
         "sensitivity/tornado.png",
         "scripts/wall_comp*.py",
     ),
-    *(
-        (
-            f"random_fields/{name}",
-            [f"{kind} random_fields/{name}" for kind in ("study", "report")],
-            8,
-            "r",
-            f"random_fields/*_{name}.png",
-            "scripts/wall_comp4.py",
-        )
-        for name in ("one_metre", "one_brick")
+    (
+        "random_fields",
+        [
+            *(f"{kind} random_fields/{name}" for name in FIELDS for kind in ("study", "report")),
+            "random_fields/results.py",
+        ],
+        8,
+        "r",
+        "random_fields/*.png",
+        "scripts/wall_comp4.py",
     ),
     *(
         (f"open_tests/{name}", [f"yade open_tests/{name}.py"], minutes, "rd")
@@ -383,8 +385,7 @@ RUNS = {
     "trade": [""],
     "accuracy": [""],
     "sensitivity": ["COMP-*"],
-    "random_fields/one_metre": ["one_metre"],
-    "random_fields/one_brick": ["one_brick"],
+    "random_fields": [""],
     "records": [""],
     "stone_walls": ["push", "cycles"],
     "stone_walls/cracks": ["cracks"],

@@ -115,7 +115,7 @@ def compared(numbers, tests):
     cells = []
     for name in NAMES:
         mean, cov = results.spread([numbers[w][name] / own[name] for w, own in tests.items()])
-        cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
+        cells.append(f"{mean:.2f} ({100 * cov:.1f} %)")
     of = [w for w in tests if walls[w].E]
     cells.append(f"{fmean(numbers[w]['stiffness'] / tests[w]['stiffness'] for w in of):.2f}")
     for share in SHARES:
@@ -136,7 +136,7 @@ def choose(folder):
     for rule, prediction in said(tests).items():
         mean, cov = results.spread([prediction[w].peak / tests[w]["peak"] for w in tests])
         right = sum(LETTERS[prediction[w].failure] == tests[w]["mode"] for w in tests)
-        rows.append([rule, f"{mean:.2f} ({100 * cov:.0f} %)", *[""] * len(NAMES), right, ""])
+        rows.append([rule, f"{mean:.2f} ({100 * cov:.1f} %)", *[""] * len(NAMES), right, ""])
     print(studies.table(["rule", *COMPARED], rows), end="\n\n")
     campaigns, rows = sorted({walls[w].campaign for w in tests}), []
     for rule, of in found.items():
@@ -197,7 +197,7 @@ def predict(folder):
     if not os.path.exists(PREDICTIONS):
         with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
             csv.writer(f, lineterminator="\n").writerows([head, *lines])
-    print(studies.table(COMPARED, [compared(made, tests)]), end="\n\n")
+    print(studies.table(["rule", *COMPARED], [["chosen", *compared(made, tests)]]), end="\n\n")
     rows = [[n, f"{math.exp(m):.2f}", f"{s:.2f}", held[n]] for n, (m, s) in error.items()]
     heads = "number, measured over predicted, deviation of its logarithm, intervals that hold"
     print(studies.table(heads.split(", "), rows))
