@@ -5,6 +5,7 @@ folder of the case, and the table of their numbers, printed.
 /usr/bin/python3 validation/figures.py CASE
 """
 
+import math
 import os
 import shutil
 import sys
@@ -49,11 +50,13 @@ def table(case, formats):
         pair = next((limits[number] for limits in runs.values() if number in limits), ())
         cells = []
         for name, limits in runs.items():
-            value = found[name].get(number)
-            text = "" if value is None else format(value, formats.get(number, ".3g"))
+            value = found[name].get(number, math.nan)
+            text = "none" if math.isnan(value) else format(value, formats.get(number, ".3g"))
             other = lambda case: measure(folder(case, name))
-            low, high = bounds(limits.get(number, (None, None)), number, other)
-            cells.append(f"**{text}**" if text and not low <= value <= high else text)
+            if number in limits:
+                low, high = bounds(limits[number], number, other)
+                text = text if low <= value <= high else f"**{text}**"
+            cells.append(text)
         rows.append([f"`{number}`", _interval(*pair) if pair else "", *cells])
     return studies.table(["number", "limits", *runs], rows)
 

@@ -13,7 +13,7 @@ import pushed
 import rules
 from masonry.scene import options
 
-parser = options.parser(__doc__, until=1)
+parser = options.parser(__doc__, until=None)
 parser.add_argument(
     "--wall", metavar="ID", required=True, help="number of the wall in reference/walls.csv"
 )
