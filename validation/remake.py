@@ -193,8 +193,8 @@ STUDIES = (
         "",
         "scripts/masonry/scene/compas_*.py",
     ),
-    ("held_loads", ["yade held_loads/held_loads.py"], 6, "r"),
-    ("stability/map", ["yade stability/stability.py"], 9, ALL, "stability/map.png"),
+    ("held_loads", ["yade held_loads/held_loads.py"], 4, "r"),
+    ("stability/map", ["yade stability/stability.py"], 7, ALL, "stability/map.png"),
     ("stability/onset", ["yade stability/onset.py"], 2, ALL),
     ("stability/invariance", ["yade stability/invariance.py"], 2, ALL),
     (
@@ -213,7 +213,7 @@ STUDIES = (
             f"dry_joint_walls/loops_{law}*",
             "scripts/gallery/wall_dry.py",
         )
-        for law, minutes in (("cyclic", 15), ("softening", 8))
+        for law, minutes in (("cyclic", 12), ("softening", 6))
     ),
     (
         "dry_joint_walls/rig",
@@ -227,7 +227,7 @@ STUDIES = (
     (
         "dry_joint_walls/reversals",
         ["dry_joint_walls/reversals.py"],
-        10,
+        6,
         "rc",
         "dry_joint_walls/reversals.*",
         "validation/stone_walls/rules.py",
@@ -253,7 +253,7 @@ STUDIES = (
     (
         "trade",
         ["trade/trade.py"],
-        20,
+        15,
         "rd",
         "trade/all_walls.png trade/table.md",
         "scripts/wall_comp*.py",
@@ -261,7 +261,7 @@ STUDIES = (
     (
         "accuracy",
         ["accuracy/accuracy.py --jobs 1"],
-        40,
+        45,
         "rd",
         "accuracy/table.md accuracy/accuracy.json",
         "scripts/masonry/run/accuracy.py",
@@ -289,7 +289,7 @@ STUDIES = (
         (f"open_tests/{name}", [f"yade open_tests/{name}.py"], minutes, "rd")
         for name, minutes in (
             ("shear_walls", 5),
-            ("panels", 30),
+            ("panels", 20),
             ("strips", 0.3),
             ("specimens", 1),
             ("eccentric_prisms", 1),
