@@ -29,13 +29,13 @@ WRENCH, RUPTURE = 0.61e6, 3.55e6  # [Pa]
 INDEX, SHEAR_INDEX = 0.029e-3, 0.093e-3  # [m] GfI/ft, GfII/c, as materials.masonry() assumes
 
 
-def masonryOf(energies):
-    """The materials, with a share of the energies of bond that :func:`masonry.materials.masonry`
-    assumes [-]."""
+def masonryOf(cohesion=1.4, energies=1.0, **changed):
+    """The materials: cohesion over direct tensile strength, and the share of the energies of bond
+    that :func:`masonry.materials.masonry` assumes [-]."""
     ft = WRENCH / 1.5
-    fv0 = 1.4 * ft
+    fv0 = cohesion * ft
     bond = dict(ft=ft, fv0=fv0, GfI=energies * INDEX * ft, GfII=energies * SHEAR_INDEX * fv0)
-    return materials.masonry(unit=BRICK, joint=MORTAR, **DATA, **bond)
+    return materials.masonry(unit=BRICK, joint=MORTAR, **{**DATA, **bond, **changed})
 
 
 def blocksOf():
@@ -57,7 +57,9 @@ def hold(scene, blocks, edges):
 def panel(edges="hinged", energies=1.0):
     """Cells of a case: pressure that is held [kPa], and over the test."""
     blocks = blocksOf()
-    scene = Scene("panel", blocks, masonryOf(energies), plane=False, arguments=words("panel"))
+    scene = Scene(
+        "panel", blocks, masonryOf(energies=energies), plane=False, arguments=words("panel")
+    )
     scene.platen("bottom")
     hold(scene, blocks, edges)
     scene.settle()
