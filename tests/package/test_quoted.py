@@ -101,7 +101,8 @@ QUOTED = [
     ),
     (
         "validation/README.md",
-        "17 known: peaks {} of the test, coefficient of variation {} %, as codes; failure type right in {};",
+        "17 known: peaks {} of the test, coefficient of variation {} %, as codes;"
+        " failure type right in {};",
         [Cell(BRICKS, "chosen", head, n) for head, n in (("peak", 0), ("peak", 1), ("modes", 0))],
     ),
     (

@@ -32,7 +32,7 @@ def reference(wall):
 PEAK = "peak_at_both_ends_kN"
 CREST = "largest_displacement_of_crest_y"
 #: Program, its options, a number of run.json or an answer, its value, and how near it must be: as
-#: near as numbers are on other machines; what the preset fast promises; three deviations of a field.
+#: near as on other machines; what the preset fast promises; three deviations of a field.
 RUNS = {
     "accuracy": (
         "accuracy/walls.py",

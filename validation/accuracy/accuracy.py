@@ -4,8 +4,8 @@
 /usr/bin/python3 validation/accuracy/accuracy.py [--jobs N] [--walls WALL ...] [--show]
 
 Makes what is missing in results/validation/accuracy: of every wall of walls.py a run with
---accuracy 2, one with --preset fast, and the reference. It goes on where it was stopped, and runs one wall a core. Then it writes table.md
-and accuracy.json beside itself; --show only does that.
+--accuracy 2, one with --preset fast, and the reference. It goes on where it was stopped, and runs
+one wall a core. Then it writes table.md and accuracy.json beside itself; --show only does that.
 """
 
 import argparse

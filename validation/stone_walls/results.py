@@ -171,8 +171,8 @@ def spread(ratios):
 
 @dataclass
 class Prediction:
-    """Of one wall: the best estimate and, where it was made blind, the 10 and 90 % quantiles of every
-    name of :class:`Numbers`."""
+    """Of one wall: the best estimate and, where it was made blind, the 10 and 90 % quantiles of
+    every name of :class:`Numbers`."""
 
     best: dict
     low: dict | None = None
