@@ -48,6 +48,7 @@ MADE = os.path.join(HERE, "made.json")
 README = "README.md"
 OWN_MARK = "remake.py"  # of the table of ages
 PYTHON = sys.executable
+ONE_CORE = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 #: Change of a number of a stored reference, over the largest of its quantity at an instant, from
 #: which on a result is stale.
@@ -545,7 +546,9 @@ def make(result, now):
     missed = 0
     with open(log, "w") as said:
         for line in result.commands:
-            status, seconds = studies.timed(line, cwd=ROOT, stdout=said, stderr=subprocess.STDOUT)
+            status, seconds = studies.timed(
+                line, cwd=ROOT, env=ONE_CORE, stdout=said, stderr=subprocess.STDOUT
+            )
             begun["seconds"] += seconds
             with open(under, "w") as file:
                 json.dump(begun, file)

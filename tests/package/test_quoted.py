@@ -21,8 +21,9 @@ class Cell:
 
     def value(self):
         found = [row[self.column] for name, row in rowsOf(self.path) if name.startswith(self.row)]
-        if not found:
-            pytest.skip(f"{self.path} has no row {self.row}: made by validation/remake.py")
+        if not found and isEmpty(self.path):
+            pytest.skip(f"{self.path} is to be made by validation/remake.py")
+        assert found, f"{self.path} has no row {self.row}"
         return numbersOf(found[0])[self.number]
 
 
@@ -31,6 +32,12 @@ class Row(dict):
 
     def __missing__(self, name):
         return self[next(head for head in self if head.startswith(name))]
+
+
+def isEmpty(path):
+    """Whether a document has marks with no table between them."""
+    with open(os.path.join(studies.HERE, path), encoding="utf-8") as file:
+        return re.search(r"(<!-- [\w./]+): begin -->\n\1: end -->", file.read())
 
 
 def rowsOf(path):
