@@ -52,6 +52,7 @@ def table(case, formats):
         for name, limits in runs.items():
             value = found[name].get(number, math.nan)
             text = "none" if math.isnan(value) else format(value, formats.get(number, ".3g"))
+            text = "0.0" if text == "-0.0" else text
             other = lambda case: measure(folder(case, name))
             if number in limits:
                 low, high = bounds(limits[number], number, other)
@@ -102,7 +103,7 @@ def paths(case):
         if blocks == "rigid":
             pair = [measure(folder(case, f"{path}-{blocks}")) for blocks in STYLES]
             for number, limits in runs[name]["limits"].items():
-                digits = ".0e" if number == "balance_error" else ".4g"
+                digits = ".0e" if number == "balance_error" else ".5g"
                 cells = [format(found[number], digits) for found in pair]
                 rows.append([path, f"`{number}`", _interval(*limits), *cells])
     print(studies.table(["path", "number", "limits", *STYLES], rows))
