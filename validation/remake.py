@@ -691,10 +691,21 @@ def writeAges(every):
     _write(os.path.join(HERE, README), OWN_MARK, [ages(every) + "\n"])
 
 
+def tablesOf(text):
+    """The tables of what a program has printed, also where it says something between two rows."""
+    lines = [line for line in text.splitlines(keepends=True) if line.startswith("|")]
+    tables = []
+    for line, after in zip(lines, [*lines[1:], "."]):
+        if set(after.strip()) <= set("|- ") or not tables:
+            tables.append("")
+        tables[-1] += line
+    return tables
+
+
 def writeTables(name):
     """Write the tables that a result has printed into the README of its folder."""
     with open(os.path.join(RESULTS, "remake", name.replace("/", "_") + ".log")) as file:
-        tables = re.findall(r"(?:^\|.*\|\n)+", file.read(), re.MULTILINE)
+        tables = tablesOf(file.read())
     path = os.path.join(HERE, name.split("/")[0], README)
     if tables and os.path.exists(path):
         _write(path, name, tables)

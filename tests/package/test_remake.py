@@ -105,7 +105,7 @@ def test_what_is_stale_is_made_recorded_and_in_the_tables(tree, capfd):
     path, result, commit = tree
     folder = path / "results/one"
     program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
-    program += "assert os.path.exists('fine'); print('so:\\n| a |\\n| 1 |\\n'); raise SystemExit(1)"
+    program += "assert os.path.exists('fine'); print('so:\\n| a |\\n|---|\\nwell\\n| 1 |\\n'); raise SystemExit(1)"
     (path / "validation/one/run.py").write_text(program)
     (folder / "old").write_text("of an older state")
     assert remake.main(["--built", commit]) == 1
@@ -121,7 +121,8 @@ def test_what_is_stale_is_made_recorded_and_in_the_tables(tree, capfd):
     assert made["one"]["commit"] == commit and made["one"]["limits missed"]
     assert f"| fresh | {commit} |" in (path / "validation/README.md").read_text()
     assert (
-        "begin -->\n| a |\n| 1 |\n<!-- one: end" in (path / "validation/one/README.md").read_text()
+        "begin -->\n| a |\n|---|\n| 1 |\n<!-- one: end"
+        in (path / "validation/one/README.md").read_text()
     )
     capfd.readouterr()
     assert remake.main(["--built", commit]) == 0
