@@ -3,7 +3,7 @@
 makes it anew.
 
 /usr/bin/python3 validation/remake.py --list                 # what there is, its age and duration
-/usr/bin/python3 validation/remake.py [NAME ...]             # makes what is stale of these or all
+/usr/bin/python3 validation/remake.py [NAME ...] [--jobs N]  # makes what is stale of these or all
 /usr/bin/python3 validation/remake.py --minutes 10           # what is stale and takes no longer
 /usr/bin/python3 validation/remake.py --force NAME           # makes it although it is not stale
 /usr/bin/python3 validation/remake.py --table                # only writes the table of README.md
@@ -12,14 +12,16 @@ NAME may be a folder, as trade, or one of its results, as wall_comp4/rigid.
 
 A result is stale if what decides its numbers has changed since it was made: a number of
 tests/references by more than TOLERANCE, which a change of the law, the scheme or a default moves
-and a change of the structure does not; the usual options; the materials; or its own program, scene
-and case, without their comments. made.json records the fingerprint of these, the commit, the date
-and the time of each; git has the references of that commit. A result without a record has the date
-and the commit of its files.
+and a change of the structure does not; the usual options; the materials; or the programs, scene and
+case of its folder, without their comments. made.json records the fingerprint of these, the commit,
+the date and the time of a core of each; git has the references of that commit.
 
-What is stopped goes on with the same command. Runs that an older state of the code has left in
-results/ are removed before a result is made, since studies take what is there. Text that quotes
-numbers is not changed: read it when its result is new.
+Each result takes one core; the longest begin first. What fails or is stopped goes on with the same
+command, and the others are made meanwhile. results/remake/NAME.log has what a result printed; its
+tables replace those between the marks <!-- NAME: begin --> and <!-- NAME: end --> of the README of
+its folder, one after another, if they are there. Other text that quotes numbers is checked by
+tests/package/test_quoted.py. Runs that an older state of the code has left in results/ are removed
+before a result is made, since studies take what is there.
 """
 
 import argparse
@@ -34,7 +36,8 @@ import shutil
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, replace  # noqa: F401
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
 
 import studies
 from masonry.run.option_table import USUAL
@@ -42,10 +45,10 @@ from masonry.run.presets import PRESETS
 from studies import HERE, RESULTS, ROOT
 
 MADE = os.path.join(HERE, "made.json")
-README = os.path.join(HERE, "README.md")
-MARKS = "<!-- remake.py: begin -->", "<!-- remake.py: end -->"
+README = "README.md"
+OWN_MARK = "remake.py"  # of the table of ages
 PYTHON = sys.executable
-YADE = ["yade", "-n", "-x"]
+ONE_CORE = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 #: Change of a number of a stored reference, over the largest of its quantity at an instant, from
 #: which on a result is stale.
@@ -56,18 +59,15 @@ NO_ANSWERS = {"fingerprint", "error of the balance [-]"}
 #: What decides the numbers of every result, beside its own sources and the usual options; patterns
 #: below the root of the repository.
 COMMON = ["scripts/masonry/materials/sources.py"]
-#: Families of stored references: a result depends on some of them.
-RIGID = [
-    "tests/references/rigid*.json",
-    "tests/references/couplets*.json",
-    "tests/references/collapse*.json",
-]
-DEFORMABLE = ["tests/references/deformable*.json"]
-CYCLIC = ["tests/references/cyclic*.json"]
-RIG = "results/validation/dry_joint_walls/rig"  # runs with the base that gives way
-FLYING = ["tests/references/flying*.json"]
-IMPACTS = ["tests/references/impacts.json"]
-ALL = RIGID + DEFORMABLE + CYCLIC + FLYING + IMPACTS
+#: Families of stored references by a letter: a result depends on some of them.
+FAMILIES = {
+    "r": ("rigid*", "couplets*", "collapse*"),
+    "d": ("deformable*",),
+    "c": ("cyclic*",),
+    "f": ("flying*",),
+    "i": ("impacts",),
+}
+ALL = "".join(FAMILIES)
 
 
 @dataclass(frozen=True)
@@ -76,35 +76,39 @@ class Result:
 
     :param name: folder, or folder/part
     :param commands: lists of words, run from the root of the repository, one after another
-    :param makes: files that are committed, as patterns below validation/; none if its numbers stand
-        in the README alone
+    :param minutes: of one core, about
+    :param makes: files that are committed, as patterns below validation/
     :param sources: patterns below the root of what decides its numbers, beside COMMON
-    :param minutes: on one core, about
     :param results: folders below results/ that it uses, and that are of no use when it is stale
     :param needs: names of results that are made before it
-    :param limits: whether an exit status of 1 says that a limit is missed, which is a result, too
+    :param given: what decides its numbers beside files, as a text
     """
 
     name: str
     commands: tuple
+    minutes: float
     makes: tuple = ()
     sources: tuple = ()
-    minutes: float = 1
     results: tuple = ()
     needs: tuple = ()
-    limits: bool = False
+    given: str = ""
+
+
+def references(letters):
+    """Patterns of the stored references of the :data:`FAMILIES` of some letters."""
+    return [f"tests/references/{name}.json" for one in letters for name in FAMILIES[one]]
 
 
 #: Minutes of the runs of cases, those of other names a third of a minute.
 CASE_MINUTES = {
-    "wall_comp0a/deformable*": 4,
-    "wall_comp1/deformable*": 3,
-    "wall_comp4/deformable*": 5,
-    "wall_comp6/deformable*": 10,
-    "dry_joint_walls/deformable*": 4,
+    "wall_comp0a/deformable*": 0.8,
+    "wall_comp1/deformable*": 0.8,
+    "wall_comp4/deformable*": 0.9,
+    "wall_comp6/deformable*": 1.9,
+    "dry_joint_walls/deformable*": 2,
 }
 #: Cases whose runs are made by programs of their own.
-OWN = {"cyclic", "trade", "convergence"}
+OWN = {"cyclic", "trade"}
 
 
 def ofCases():
@@ -120,368 +124,280 @@ def ofCases():
                 continue
             name = f"{case}/{run}"
             names.append(name)
-            soft = "deformable" in chosen["options"]
-            needs = sorted(
-                {
-                    f"{b}/{run}"
-                    for pair in chosen["limits"].values()
-                    for b in pair
-                    if isinstance(b, str)
-                }
-            )
+            family = "d" if "deformable" in chosen["options"] else "r"
+            bounds = [bound for pair in chosen["limits"].values() for bound in pair]
             yield Result(
                 name,
-                ((PYTHON, "validation/validate.py", case, run),),
-                sources=(
-                    f"validation/{case}/case.json",
-                    studies.scenePath(chosen["scene"]),
-                    *(DEFORMABLE if soft else RIGID),
-                ),
-                minutes=next((m for p, m in CASE_MINUTES.items() if fnmatch.fnmatch(name, p)), 0.3),
+                (words("validate.py", case, run),),
+                next((m for p, m in CASE_MINUTES.items() if fnmatch.fnmatch(name, p)), 0.3),
+                sources=(studies.scenePath(chosen["scene"]), *references(family)),
                 results=(f"validation/{case}/{run}",),
-                needs=tuple(needs),
-                limits=True,
+                needs=tuple(sorted({f"{b}/{run}" for b in bounds if isinstance(b, str)})),
+                given=json.dumps(chosen),
             )
-        if case == "dry_joint_walls":
-            yield Result(
-                f"{case}/envelopes",
-                ((PYTHON, f"validation/{case}/compare.py"),),
-                (f"{case}/envelopes.png",),
-                ("validation/dry_joint_walls/compare.py",),
-                0.2,
-                needs=tuple(names),
-            )
-            yield Result(
-                f"{case}/figures",
-                ((PYTHON, f"validation/{case}/pattern.py"),),
-                (f"{case}/cracks.png",),
-                (f"validation/{case}/pattern.py", "scripts/gallery/wall_dry.py", *RIGID),
-                0.3,
-            )
-            continue
-        figures = (f"{case}/curve*.png", f"{case}/cracks*.png")
+        dry = case == "dry_joint_walls"
         yield Result(
             f"{case}/figures",
-            ((PYTHON, "validation/figures.py", case),),
-            figures,
-            ("validation/figures.py",),
-            0.3,
+            (words(f"{case}/compare.py") if dry else words("figures.py", case),),
+            0.2,
+            (f"{case}/envelopes.png",) if dry else (f"{case}/curve*.png", f"{case}/cracks_*.png"),
+            (f"validation/{case}/compare.py" if dry else "validation/figures.py",),
             needs=tuple(names),
         )
 
 
-#: Folders of the studies of stone walls, and the walls whose crack patterns are drawn.
-RUNS_OF_STONE = [f"results/validation/stone_walls/{name}" for name in ("push", "cycles")]
-CRACKED = ("5", "13", "22", "50", "120")
+def words(program, *more):
+    """A command that runs a program of this folder without YADE."""
+    return (PYTHON, f"validation/{program}", *more)
 
 
-def ofStudies():
-    """The results of the studies, each with a program of its own."""
-    program = lambda path, *words: (PYTHON, f"validation/{path}", *words)
-    inYade = lambda path, *words: (*YADE, f"validation/{path}", *words)
-    own = lambda folder: (f"validation/{folder}/*.py", f"validation/{folder}/case.json")
-    walls = ("scripts/wall_comp*.py",)
-    module = lambda *words: (PYTHON, "-m", *words)
-    study = lambda path: (
-        module("masonry_study", f"validation/{path}.py", "--out", f"results/validation/{path}"),
-        module("masonry_study.report", f"results/validation/{path}"),
+def command(text):
+    """A command from a line: ``yade PROGRAM ...``, ``study FILE`` or ``report FILE`` of
+    masonry_study, or ``PROGRAM ...`` without YADE."""
+    first, *more = text.split()
+    if first == "yade":
+        return ("yade", "-n", "-x", f"validation/{more[0]}", *more[1:])
+    if first in ("study", "report"):
+        out = f"results/validation/{more[0]}"
+        if first == "report":
+            return (PYTHON, "-m", "masonry_study.report", out)
+        file = f"validation/{more[0]}.py"
+        return (PYTHON, "-m", "masonry_study", file, "--out", out, "--jobs", "1")
+    return words(first, *more)
+
+
+#: Studies of random fields.
+FIELDS = "one_metre", "one_brick"
+#: Walls of stone whose crack patterns are drawn.
+CRACKED = "5 13 22 50 120".split()
+_CRACKS = "results/validation/stone_walls/cracks/"
+_STONE = "results/validation/stone_walls/push"
+_BRICK = "results/validation/brick_walls/"
+_RIG = "--no-vtk --out results/validation/dry_joint_walls/rig"
+
+#: Results of programs of their own: name, commands, minutes, letters of references, files that are
+#: made, and further sources.
+STUDIES = (
+    (
+        "closed_forms",
+        ["yade closed_forms/closed_forms.py", "yade closed_forms/convergence.py"],
+        3,
+        ALL,
+    ),
+    ("contact", ["yade contact/contact.py"], 4, "rf"),
+    ("statics", ["yade statics/statics.py --sample 500 --seed 31"], 2, ALL),
+    (
+        "barrel_vault",
+        ["barrel_vault/barrel_vault.py"],
+        1,
+        "r",
+        "",
+        "scripts/masonry/scene/compas_*.py",
+    ),
+    ("held_loads", ["yade held_loads/held_loads.py"], 4, "r"),
+    ("stability/map", ["yade stability/stability.py"], 7, ALL, "stability/map.png"),
+    ("stability/onset", ["yade stability/onset.py"], 2, ALL),
+    ("stability/invariance", ["yade stability/invariance.py"], 2, ALL),
+    (
+        "stability/extremes",
+        ["yade stability/extremes.py", "yade stability/extremes.py --falls --scenes 40"],
+        3,
+        ALL,
+    ),
+    ("stability/soak", ["yade stability/soak.py"], 2, "rd"),
+    *(
+        (
+            f"dry_joint_walls/loops_{law}",
+            [f"dry_joint_walls/compare_loops.py --joints {law}"],
+            minutes,
+            "rc",
+            f"dry_joint_walls/loops_{law}*",
+            "scripts/gallery/wall_dry.py",
+        )
+        for law, minutes in (("cyclic", 12), ("softening", 6))
+    ),
+    (
+        "dry_joint_walls/rig",
+        [
+            f"yade dry_joint_walls/rig.py --rig 0 {_RIG}_0",
+            f"yade dry_joint_walls/rig.py --rig 37 {_RIG}_37",
+        ],
+        2,
+        "r",
+    ),
+    (
+        "dry_joint_walls/reversals",
+        ["dry_joint_walls/reversals.py"],
+        6,
+        "rc",
+        "dry_joint_walls/reversals.*",
+        "validation/stone_walls/rules.py",
+    ),
+    (
+        "dry_joint_walls/pattern",
+        ["dry_joint_walls/pattern.py"],
+        0.3,
+        "r",
+        "dry_joint_walls/cracks.png",
+        "scripts/gallery/wall_dry.py",
+    ),
+    ("dry_joint_walls/plain_wall", ["dry_joint_walls/plain_wall.py"], 5, ""),
+    ("cyclic/joint", ["yade cyclic/joint.py", "cyclic/figures.py"], 0.5, "c", "cyclic/joint.png"),
+    (
+        "cyclic/walls",
+        ["cyclic/walls.py"],
+        6,
+        "rc",
+        "cyclic/walls.md cyclic/loops_*.png cyclic/degradation.png",
+        "scripts/wall_comp*.py",
+    ),
+    (
+        "trade",
+        ["trade/trade.py"],
+        15,
+        "rd",
+        "trade/all_walls.png trade/table.md",
+        "scripts/wall_comp*.py",
+    ),
+    (
+        "accuracy",
+        ["accuracy/accuracy.py --jobs 1"],
+        45,
+        "rd",
+        "accuracy/table.md accuracy/accuracy.json",
+        "scripts/masonry/run/accuracy.py",
+    ),
+    (
+        "sensitivity",
+        ["sensitivity/tornado.py"],
+        10,
+        "r",
+        "sensitivity/tornado.png",
+        "scripts/wall_comp*.py",
+    ),
+    (
+        "random_fields",
+        [
+            *(f"{kind} random_fields/{name}" for name in FIELDS for kind in ("study", "report")),
+            "random_fields/results.py",
+        ],
+        8,
+        "r",
+        "random_fields/*.png",
+        "scripts/wall_comp4.py",
+    ),
+    *(
+        (f"open_tests/{name}", [f"yade open_tests/{name}.py"], minutes, "rd")
+        for name, minutes in (
+            ("shear_walls", 5),
+            ("panels", 20),
+            ("strips", 0.3),
+            ("specimens", 1),
+            ("eccentric_prisms", 1),
+        )
+    ),
+    (
+        "records",
+        [
+            *(f"study records/ida_{name}" for name in ("parapet", "gable", "facade")),
+            "records/results.py results/validation/records",
+        ],
+        9,
+        "ri",
+        "records/fragility.xml records/fragility.png",
+    ),
+    (
+        "stone_walls",
+        [
+            "study stone_walls/push",
+            f"stone_walls/results.py {_STONE}",
+            f"stone_walls/figures.py peaks {_STONE}",
+        ],
+        10,
+        "rc",
+        "stone_walls/table.md stone_walls/peaks.png",
+    ),
+    (
+        "stone_walls/opened",
+        ["stone_walls/results.py --opened", "stone_walls/figures.py opened"],
+        0.3,
+        "",
+        "stone_walls/opened.md stone_walls/opened.png",
+        "validation/stone_walls/predictions.csv",
+    ),
+    (
+        "stone_walls/cracks",
+        [
+            *(f"yade stone_walls/wall.py --wall {w} --out {_CRACKS}{w}" for w in CRACKED),
+            "stone_walls/figures.py cracks " + " ".join(_CRACKS + w for w in CRACKED),
+        ],
+        1,
+        "rc",
+        "stone_walls/cracks.png",
+    ),
+    (
+        "brick_walls",
+        [
+            "study brick_walls/choose",
+            "study brick_walls/push",
+            f"brick_walls/compare.py choose {_BRICK}choose",
+            f"brick_walls/compare.py predict {_BRICK}push",
+        ],
+        12,
+        "r",
+        "",
+        "validation/brick_walls/walls.csv validation/stone_walls/*.py",
+    ),
+    (
+        "calibration",
+        ["calibration/blind.py --jobs 1"],
+        10,
+        "r",
+        "calibration/table.md calibration/case1.png",
+        "scripts/gallery/couplet.py scripts/masonry_study/calibrate.py",
+    ),
+)
+
+
+def ofStudy(name, lines, minutes, letters, makes="", more=""):
+    """The :class:`Result` of a row of :data:`STUDIES`."""
+    folder = name.split("/")[0]
+    own = [f"validation/{folder}/*.{end}" for end in ("py", "cpp")]
+    own += [f"validation/{folder}/{file}" for file in ("case.json", "blind.json")]
+    return Result(
+        name,
+        tuple(map(command, lines)),
+        minutes,
+        tuple(makes.split()),
+        (*own, *more.split(), *references(letters)),
+        tuple(f"validation/{folder}/{part}" for part in RUNS.get(name, ())),
     )
-    loops = [(law, law) for law in ("cyclic", "softening")]
-    return [
-        Result(
-            "closed_forms",
-            (inYade("closed_forms/closed_forms.py"),),
-            (),
-            (*own("closed_forms"), *ALL),
-            3,
-            limits=True,
-        ),
-        Result(
-            "closed_forms/convergence",
-            (inYade("closed_forms/convergence.py"),),
-            (),
-            (*own("closed_forms"), *RIGID),
-            3,
-        ),
-        Result(
-            "contact",
-            (inYade("contact/contact.py"),),
-            (),
-            (*own("contact"), *RIGID, *FLYING),
-            5,
-            limits=True,
-        ),
-        Result(
-            "statics",
-            (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),),
-            (),
-            (*own("statics"), *ALL),
-            10,
-        ),
-        Result(
-            "barrel_vault",
-            (program("barrel_vault/barrel_vault.py"),),
-            (),
-            (*own("barrel_vault"), "scripts/masonry/scene/compas_*.py", *RIGID),
-            1,
-            limits=True,
-        ),
-        Result(
-            "held_loads",
-            (inYade("held_loads/held_loads.py"),),
-            (),
-            (*own("held_loads"), *RIGID),
-            6,
-            limits=True,
-        ),
-        Result(
-            "stability/map",
-            (inYade("stability/stability.py"),),
-            ("stability/map.png",),
-            ("validation/stability/stability.py", *ALL),
-            9,
-            limits=True,
-        ),
-        Result(
-            "stability/onset",
-            (inYade("stability/onset.py"),),
-            (),
-            ("validation/stability/onset.py", *ALL),
-            2,
-            limits=True,
-        ),
-        Result(
-            "stability/invariance",
-            (inYade("stability/invariance.py"),),
-            (),
-            ("validation/stability/invariance.py", *RIGID),
-            0.5,
-            limits=True,
-        ),
-        Result(
-            "stability/extremes",
-            (
-                inYade("stability/extremes.py"),
-                inYade("stability/extremes.py", "--falls", "--scenes", "40"),
-            ),
-            (),
-            ("validation/stability/extremes.py", *ALL),
-            8,
-            limits=True,
-        ),
-        Result(
-            "stability/soak",
-            (inYade("stability/soak.py"),),
-            (),
-            ("validation/stability/soak.py", *RIGID),
-            5,
-        ),
-        *(
-            Result(
-                f"dry_joint_walls/loops_{law}",
-                (program("dry_joint_walls/compare_loops.py", "--joints", joints),),
-                (f"dry_joint_walls/loops_{law}*",),
-                (
-                    "validation/dry_joint_walls/compare_loops.py",
-                    "validation/dry_joint_walls/blind.json",
-                    "scripts/gallery/wall_dry.py",
-                    *RIGID,
-                    *CYCLIC,
-                ),
-                20,
-                (f"validation/dry_joint_walls/loops_{law}*",),
-            )
-            for law, joints in loops
-        ),
-        Result(
-            "dry_joint_walls/rig",
-            (
-                *(
-                    inYade("dry_joint_walls/rig.py", *f"--rig {k} --no-vtk --out {RIG}_{k}".split())
-                    for k in ("0", "37")
-                ),
-                program("dry_joint_walls/reversals.py"),
-            ),
-            ("dry_joint_walls/reversals.md", "dry_joint_walls/reversals.png"),
-            (*own("dry_joint_walls"), "validation/stone_walls/rules.py", *RIGID, *CYCLIC),
-            16,
-            ("validation/dry_joint_walls/rig_*", "validation/dry_joint_walls/reversals"),
-        ),
-        Result(
-            "dry_joint_walls/plain_wall",
-            (program("dry_joint_walls/plain_wall.py"),),
-            (),
-            ("validation/dry_joint_walls/plain_wall.*",),
-            5,
-        ),
-        Result(
-            "cyclic/joint",
-            (inYade("cyclic/joint.py"), program("cyclic/figures.py")),
-            ("cyclic/joint.png",),
-            (*own("cyclic"), *CYCLIC),
-            0.5,
-            ("validation/cyclic/joint",),
-        ),
-        Result(
-            "cyclic/walls",
-            (program("cyclic/walls.py"),),
-            ("cyclic/walls.md", "cyclic/loops_*.png", "cyclic/degradation.png"),
-            (*own("cyclic"), *walls, *RIGID, *CYCLIC),
-            15,
-            ("validation/cyclic/comp*",),
-        ),
-        Result(
-            "convergence",
-            (program("convergence/converge.py"),),
-            ("convergence/curves.png",),
-            (*own("convergence"), *walls, *DEFORMABLE),
-            60,
-            ("validation/convergence",),
-        ),
-        Result(
-            "trade",
-            (program("trade/trade.py"),),
-            ("trade/*.png", "trade/table.md", "trade/trade.json"),
-            (*own("trade"), *walls, *RIGID, *DEFORMABLE),
-            300,
-            ("trade",),
-        ),
-        Result(
-            "accuracy",
-            (program("accuracy/accuracy.py"),),
-            ("accuracy/table.md", "accuracy/accuracy.json"),
-            (*own("accuracy"), "scripts/masonry/run/accuracy.py", *RIGID, *DEFORMABLE),
-            50,
-            ("accuracy",),
-            ("trade",),
-        ),
-        Result(
-            "sensitivity/tornado",
-            (program("sensitivity/tornado.py"),),
-            ("sensitivity/tornado.png",),
-            (
-                "validation/sensitivity/tornado.py",
-                *walls,
-                *RIGID,
-            ),
-            45,
-            ("validation/sensitivity/COMP-*",),
-        ),
-        Result(
-            "random_fields/one_metre",
-            study("random_fields/one_metre"),
-            ("random_fields/*_one_metre.png",),
-            ("validation/random_fields/*.py", *RIGID),
-            20,
-            ("validation/random_fields/one_metre",),
-        ),
-        Result(
-            "random_fields/one_brick",
-            study("random_fields/one_brick"),
-            ("random_fields/*_one_brick.png",),
-            ("validation/random_fields/*.py", *RIGID),
-            20,
-            ("validation/random_fields/one_brick",),
-        ),
-        Result(
-            "open_tests",
-            tuple(
-                inYade(f"open_tests/{name}.py")
-                for name in ("shear_walls", "panels", "strips", "specimens", "eccentric_prisms")
-            ),
-            (),
-            ("validation/open_tests/*.py", *RIGID, *DEFORMABLE),
-            40,
-        ),
-        Result(
-            "records",
-            (
-                *(
-                    (
-                        PYTHON,
-                        "-m",
-                        "masonry_study",
-                        f"validation/records/ida_{name}.py",
-                        "--out",
-                        f"results/validation/records/{name}",
-                    )
-                    for name in ("parapet", "gable", "facade")
-                ),
-                program("records/results.py", "results/validation/records"),
-            ),
-            ("records/fragility.xml", "records/fragility.png"),
-            ("validation/records/*.py", *RIGID, *IMPACTS),
-            20,
-            ("validation/records",),
-        ),
-        Result(
-            "stone_walls",
-            (
-                *(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")),
-                *(
-                    program(*words, *RUNS_OF_STONE)
-                    for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks"))
-                ),
-            ),
-            ("stone_walls/table.md", "stone_walls/peaks.png"),
-            (*own("stone_walls"), *RIGID, *CYCLIC),
-            70,
-            ("validation/stone_walls/push", "validation/stone_walls/cycles"),
-        ),
-        Result(
-            "stone_walls/opened",
-            (
-                program("stone_walls/results.py", "--opened"),
-                program("stone_walls/figures.py", "opened"),
-            ),
-            ("stone_walls/opened.md", "stone_walls/opened.png"),
-            (*own("stone_walls"), "validation/stone_walls/predictions.csv"),
-        ),
-        Result(
-            "stone_walls/cracks",
-            (
-                *(
-                    inYade(
-                        "stone_walls/wall.py",
-                        "--wall",
-                        wall,
-                        "--out",
-                        f"results/validation/stone_walls/cracks/{wall}",
-                    )
-                    for wall in CRACKED
-                ),
-                program(
-                    "stone_walls/figures.py",
-                    "cracks",
-                    *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED),
-                ),
-            ),
-            ("stone_walls/cracks.png",),
-            (*own("stone_walls"), *RIGID, *CYCLIC),
-            1,
-            ("validation/stone_walls/cracks",),
-        ),
-        Result(
-            "calibration",
-            (program("calibration/blind.py"),),
-            ("calibration/table.md", "calibration/case1.png"),
-            (
-                *own("calibration"),
-                "scripts/gallery/couplet.py",
-                "scripts/masonry_study/calibrate.py",
-                *RIGID,
-            ),
-            10,
-            ("validation/calibration",),
-            limits=True,
-        ),
-    ]
+
+
+#: Folders of results/validation/FOLDER that a study uses, by its name.
+RUNS = {
+    "dry_joint_walls/loops_cyclic": ["loops_cyclic*"],
+    "dry_joint_walls/loops_softening": ["loops_softening*"],
+    "dry_joint_walls/rig": ["rig_*"],
+    "dry_joint_walls/reversals": ["reversals"],
+    "cyclic/joint": ["joint"],
+    "cyclic/walls": ["comp*"],
+    "trade": [""],
+    "accuracy": [""],
+    "sensitivity": ["COMP-*"],
+    "random_fields": [""],
+    "records": [""],
+    "stone_walls": ["push"],
+    "stone_walls/cracks": ["cracks"],
+    "brick_walls": [""],
+    "calibration": [""],
+}
 
 
 def everything():
     """All results by their names, each after those that it needs; what needs nothing stands in the
-    order of its time."""
-    found = {r.name: r for r in [*ofCases(), *ofStudies()]}
+    order of its time, the longest first."""
+    found = {r.name: r for r in [*ofCases(), *(ofStudy(*row) for row in STUDIES)]}
     ordered = {}
 
     def add(result, above=()):
@@ -491,7 +407,7 @@ def everything():
             add(found[name], (*above, result.name))
         ordered[result.name] = result
 
-    for result in sorted(found.values(), key=lambda r: r.minutes):
+    for result in sorted(found.values(), key=lambda r: -r.minutes):
         add(result)
     return ordered
 
@@ -516,7 +432,8 @@ def isReference(path):
 
 def fingerprint(result, every=None):
     """What decides the numbers of a result beside the references, as a text."""
-    digest = hashlib.sha256(json.dumps([USUAL, PRESETS], sort_keys=True).encode())
+    given = [USUAL, PRESETS, result.given]
+    digest = hashlib.sha256(json.dumps(given, sort_keys=True).encode())
     for path in sourcesOf(result, every or everything()):
         if not isReference(path):
             digest.update(path.encode())
@@ -588,53 +505,96 @@ def git(*words):
     return done.stdout.strip()
 
 
-def commitOf(result):
-    """Commit and date of the files of a result, as git has them, or of its README."""
-    paths = [f"validation/{p}" for p in result.makes] or [
-        f"validation/{result.name.split('/')[0]}/README.md"
-    ]
-    return git("log", "-1", "--format=%h %cs", "--", *paths).split() or ["-", "-"]
-
-
 def stateOf(result, made, every):
     """How old a result is: ``fresh``, ``stale`` or ``unrecorded``, with the commit and the date of
     its making."""
     known = made.get(result.name)
     if not known:
-        return ("unrecorded", *commitOf(result))
+        return "unrecorded", "-", "-"
     same = known["fingerprint"] == fingerprint(result, every)
     fresh = same and not movedReferences(result, known["commit"], every)
     return "fresh" if fresh else "stale", known["commit"], known["date"]
+
+
+def minutesOf(result, made):
+    """Minutes of a core, as they were when a result was made or about."""
+    return made.get(result.name, {}).get("minutes", result.minutes)
 
 
 # -- making ----------------------------------------------------------------------------------------
 
 
 def make(result, now):
-    """Run the commands of a result. Returns whether they came to their end.
+    """Run the commands of a result. Returns its record for made.json without commit and date, or a
+    sentence that says what has failed.
 
     Runs of an older fingerprint are removed before; those of this one, of an attempt that was
     stopped, are taken.
     """
-    under = os.path.join(RESULTS, "remake", result.name.replace("/", "_") + ".txt")
-    os.makedirs(os.path.dirname(under), exist_ok=True)
-    before = open(under).read() if os.path.exists(under) else None
-    if before != now:
+    log = os.path.join(RESULTS, "remake", result.name.replace("/", "_") + ".log")
+    under = log.removesuffix("log") + "json"
+    os.makedirs(os.path.dirname(log), exist_ok=True)
+    begun = {"fingerprint": now, "seconds": 0.0}
+    if os.path.exists(under):
+        with open(under) as file:
+            before = json.load(file)
+        begun = before if before["fingerprint"] == now else begun
+    if not begun["seconds"]:
         for pattern in result.results:
             for path in glob.glob(os.path.join(RESULTS, pattern)):
                 shutil.rmtree(path, ignore_errors=True)
-        with open(under, "w") as file:
-            file.write(now)
-    for command in result.commands:
-        print("$", " ".join(command), flush=True)
-        status = subprocess.run(command, cwd=ROOT).returncode
-        if status not in ((0, 1) if result.limits else (0,)):
-            print(f"{result.name}: exit status {status}; the same command goes on", flush=True)
-            return False
-        if status:
-            print(f"{result.name}: a limit is missed", flush=True)
+    missed = 0
+    with open(log, "w") as said:
+        for line in result.commands:
+            status, seconds = studies.timed(
+                line, cwd=ROOT, env=ONE_CORE, stdout=said, stderr=subprocess.STDOUT
+            )
+            begun["seconds"] += seconds
+            with open(under, "w") as file:
+                json.dump(begun, file)
+            allowed = (0,) if "-m" in line else (0, 1)
+            if status not in allowed or status and _raised(log):
+                return f"exit status {status} of {' '.join(line)}: {log}"
+            missed += status
     os.remove(under)
-    return True
+    found = {"fingerprint": now, "minutes": round(begun["seconds"] / 60, 1)}
+    return {**found, "limits missed": True} if missed else found
+
+
+def _raised(log):
+    """Whether a program has ended with an error rather than with a missed limit."""
+    with open(log) as file:
+        return re.search(r"^(Traceback|\w+: error: )", file.read(), re.MULTILINE)
+
+
+def makeAll(due, every, jobs, built):
+    """Make results, ``jobs`` at a time, each after those that it needs. Returns those that were not
+    made, with the reason."""
+    due, running, failed = {r.name: r for r in due}, {}, {}
+    with ThreadPoolExecutor(jobs) as pool:
+        while due or running:
+            for name, result in list(due.items()):
+                if lost := [n for n in result.needs if n in failed]:
+                    failed[name] = f"needs {', '.join(lost)}"
+                    del due[name]
+                elif len(running) < jobs and not any(
+                    n in due or n in running.values() for n in result.needs
+                ):
+                    print(f"{time.strftime('%H:%M')} {name} begins", flush=True)
+                    running[pool.submit(make, result, fingerprint(result, every))] = name
+                    del due[name]
+            for one in wait(running, return_when=FIRST_COMPLETED).done:
+                name, found = running.pop(one), one.result()
+                if isinstance(found, str):
+                    failed[name] = found
+                    print(f"{name}: {found}", flush=True)
+                    continue
+                record(every[name], found, built)
+                writeTables(name)
+                writeAges(every)
+                note = ", a limit is missed" if "limits missed" in found else ""
+                print(f"{name}: {found['minutes']:g} min of a core{note}", flush=True)
+    return failed
 
 
 def builtFrom():
@@ -661,14 +621,9 @@ def builtFrom():
     return built
 
 
-def record(result, now, seconds, built):
+def record(result, found, built):
     """Write down in made.json that a result was made, by the plugin of a commit."""
-    entry = {
-        "commit": built,
-        "date": time.strftime("%Y-%m-%d"),
-        "fingerprint": now,
-        "minutes": round(seconds / 60, 1),
-    }
+    entry = {"commit": built, "date": time.strftime("%Y-%m-%d"), **found}
     made = {**readMade(), result.name: entry}
     with open(MADE + ".new", "w") as file:
         json.dump(made, file, indent=1, sort_keys=True)
@@ -676,17 +631,20 @@ def record(result, now, seconds, built):
     os.replace(MADE + ".new", MADE)
 
 
-def table(every):
+# -- tables ----------------------------------------------------------------------------------------
+
+
+def ages(every):
     """The table of validation/README.md: results of a folder in one line if they are of one state,
     commit and date."""
     made, rows = readMade(), {}
     for result in every.values():
         state, commit, date = stateOf(result, made, every)
         folder, _, part = result.name.partition("/")
-        key = folder, state, commit, date
-        parts, minutes = rows.get(key, ([], 0))
-        taken = made.get(result.name, {}).get("minutes", result.minutes)
-        rows[key] = [*parts, part or "all"], minutes + taken
+        parts, minutes = rows.get((folder, state, commit, date), ([], 0))
+        rows[folder, state, commit, date] = [*parts, part or "all"], minutes + minutesOf(
+            result, made
+        )
     cells = [
         [
             f"[{folder}]({folder}/README.md)",
@@ -698,24 +656,59 @@ def table(every):
         ]
         for (folder, state, commit, date), (parts, minutes) in sorted(rows.items())
     ]
-    return studies.table(
-        ["folder", "results", "state", "commit", "date", "minutes of a core"], cells
-    )
+    total = sum(minutes for _, minutes in rows.values())
+    heads = ["folder", "results", "state", "commit", "date", "minutes of a core"]
+    return studies.table(heads, [*cells, ["all", "", "", "", "", f"{total:.0f}"]])
 
 
-def writeTable(every):
-    """Write the table into validation/README.md."""
-    with open(README) as file:
+def put(text, name, tables):
+    """A document with other tables between the marks of a name: one between each pair of marks,
+    between the last pair all that are left."""
+    begin, end = (re.escape(f"<!-- {name}: {word} -->") for word in ("begin", "end"))
+    marks = re.compile(f"(?<={begin}\n).*?(?={end})", re.DOTALL)
+    left, places = list(tables), len(marks.findall(text))
+
+    def one(found):
+        nonlocal places
+        places -= 1
+        mine = [left.pop(0)] if places else left
+        return "\n".join(mine)
+
+    return marks.sub(one, text)
+
+
+def _write(path, name, tables):
+    with open(path) as file:
         text = file.read()
-    begin, end = map(re.escape, MARKS)
-    new, count = re.subn(
-        f"(?<={begin}\n).*?(?={end})", lambda _: table(every) + "\n", text, flags=re.DOTALL
-    )
-    if count != 1:
-        raise SystemExit(f"{README}: the marks {' and '.join(MARKS)} must be there once")
+    new = put(text, name, tables)
     if new != text:
-        with open(README, "w") as file:
+        with open(path, "w") as file:
             file.write(new)
+
+
+def writeAges(every):
+    """Write the table of ages into validation/README.md."""
+    _write(os.path.join(HERE, README), OWN_MARK, [ages(every) + "\n"])
+
+
+def tablesOf(text):
+    """The tables of what a program has printed, also where it says something between two rows."""
+    lines = [line for line in text.splitlines(keepends=True) if line.startswith("|")]
+    tables = []
+    for line, after in zip(lines, [*lines[1:], "."]):
+        if set(after.strip()) <= set("|- ") or not tables:
+            tables.append("")
+        tables[-1] += line
+    return tables
+
+
+def writeTables(name):
+    """Write the tables that a result has printed into the README of its folder."""
+    with open(os.path.join(RESULTS, "remake", name.replace("/", "_") + ".log")) as file:
+        tables = tablesOf(file.read())
+    path = os.path.join(HERE, name.split("/")[0], README)
+    if tables and os.path.exists(path):
+        _write(path, name, tables)
 
 
 def main(words=None):
@@ -729,6 +722,8 @@ def main(words=None):
     parser.add_argument(
         "--minutes", type=float, default=float("inf"), help="leave out what takes longer"
     )
+    cores = len(os.sched_getaffinity(0))
+    parser.add_argument("--jobs", type=int, default=cores, help="results at a time (%(default)s)")
     parser.add_argument(
         "--built",
         metavar="COMMIT",
@@ -736,40 +731,34 @@ def main(words=None):
     )
     args = parser.parse_args(words)
     every, made = everything(), readMade()
-    unknown = [n for n in args.names if not any(r == n or r.startswith(n + "/") for r in every)]
-    if unknown:
+    of = lambda result, names: any(result == n or result.startswith(n + "/") for n in names)
+    if unknown := [n for n in args.names if not any(of(r, [n]) for r in every)]:
         parser.error(f"no result {', '.join(unknown)}; there are {', '.join(every)}")
-    wanted = [
-        r
-        for r in every.values()
-        if not args.names or any(r.name == n or r.name.startswith(n + "/") for n in args.names)
-    ]
+    wanted = [r for r in every.values() if not args.names or of(r.name, args.names)]
     if args.table:
-        writeTable(every)
+        writeAges(every)
         return 0
     if args.list:
         for result in wanted:
             state, commit, date = stateOf(result, made, every)
-            minutes = made.get(result.name, {}).get("minutes", result.minutes)
             print(
-                f"{result.name:32} {state:10} {commit:10} {date:10} {minutes:6.1f} min "
+                f"{result.name:32} {state:10} {commit:10} {date:10}"
+                f" {minutesOf(result, made):6.1f} min "
                 f" {' && '.join(' '.join(c) for c in result.commands)}"
             )
         return 0
-    failed, built = [], args.built or builtFrom()
-    for result in wanted:
-        fresh = stateOf(result, made, every)[0] == "fresh"
-        if fresh and not args.force or result.minutes > args.minutes:
-            continue
-        print(f"-- {result.name}: some {result.minutes:g} min", flush=True)
-        now, began = fingerprint(result, every), time.perf_counter()
-        if make(result, now):
-            record(result, now, time.perf_counter() - began, built)
-            writeTable(every)
-        else:
-            failed.append(result.name)
-    if failed:
-        print("not made:", ", ".join(failed))
+    due = [
+        r
+        for r in wanted
+        if (args.force or stateOf(r, made, every)[0] != "fresh")
+        and minutesOf(r, made) <= args.minutes
+    ]
+    began = time.perf_counter()
+    failed = makeAll(due, every, args.jobs, due and (args.built or builtFrom()))
+    for name, why in failed.items():
+        print(f"not made: {name}, {why}")
+    minutes = (time.perf_counter() - began) / 60
+    print(f"made {len(due) - len(failed)} of {len(due)} results in {minutes:.0f} min")
     return 1 if failed else 0
 
 

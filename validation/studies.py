@@ -15,6 +15,7 @@ from masonry.numbers.files import readRun
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 RESULTS = os.path.join(ROOT, "results")
+SECONDS = "seconds_of_a_core"  # file of a run
 
 
 def readCase(case):
@@ -44,8 +45,26 @@ def run(scene, options, out, threads=1, quiet=False):
     """
     path = os.path.join(ROOT, scenePath(scene))
     command = ["yade", f"-j{threads}", "-n", "-x", path, "--out", out, *options]
-    said = subprocess.DEVNULL if quiet else None
-    subprocess.run(command, check=True, stdout=said)
+    status, seconds = timed(command, stdout=subprocess.DEVNULL if quiet else None)
+    if status:
+        raise subprocess.CalledProcessError(status, command)
+    with open(os.path.join(out, SECONDS), "w") as f:
+        f.write(f"{seconds:.1f}\n")
+
+
+def timed(command, **how):
+    """Run a program, with the settings of subprocess.Popen. Returns its exit status, and the
+    seconds of a core that it took with the programs it started."""
+    process = subprocess.Popen(command, **how)
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, used.ru_utime + used.ru_stime
+
+
+def secondsOf(out):
+    """Seconds of a core that the run of a folder took."""
+    with open(os.path.join(out, SECONDS)) as f:
+        return float(f.read())
 
 
 def done(out):

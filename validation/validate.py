@@ -27,16 +27,18 @@ def check(limits, numbers, other):
     """Compare numbers with limits, and print a line a limit. Returns whether all hold.
 
     :param limits: dict of name -> [low, high], null for none
-    :param numbers: what :func:`masonry_view.measure.measure` returns
+    :param numbers: what :func:`masonry_view.measure.measure` returns; a number that it has not, as
+        where the force never falls, misses its limit
     :param other: function of a case's name -> the numbers of its run
     """
     fine = True
     for name, pair in limits.items():
         low, high = bounds(pair, name, other)
-        holds = low <= numbers[name] <= high
+        number = numbers.get(name, math.nan)
+        holds = low <= number <= high
         fine = fine and holds
         verdict = "holds" if holds else "MISSED"
-        print(f"  {name:34} {numbers[name]:12.5g}  [{low:.5g}, {high:.5g}]  {verdict}")
+        print(f"  {name:34} {number:12.5g}  [{low:.5g}, {high:.5g}]  {verdict}")
     return fine
 
 

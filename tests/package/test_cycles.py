@@ -53,8 +53,8 @@ def test_beyond_the_monotonic_curve_there_is_no_number():
 
 def test_figures_are_drawn(tmp_path):
     curves = {"softening": slider([1, 4]), "cyclic": slider([1, 4], negative=0.8)}
-    walls.drawLoops("comp1", MONOTONIC, curves, tmp_path / "loops.png")
-    found = {"comp1": {k: walls.numbers(*c, MONOTONIC) for k, c in curves.items()}}
+    walls.drawLoops("comp4", MONOTONIC, curves, tmp_path / "loops.png")
+    found = {"comp4": {k: walls.numbers(*c, MONOTONIC) for k, c in curves.items()}}
     walls.drawDegradation(found, tmp_path / "degradation.png")
     for name in ("loops.png", "degradation.png"):
         assert (tmp_path / name).stat().st_size > 5000

@@ -23,11 +23,19 @@ def test_every_figure_and_table_is_made_by_one_result():
         if f.endswith((".png", "table.md", "walls.md", ".json")) or "/loops_" in f
     ]
     given = {"case.json", "blind.json", "made.json"}  # written by hand, or by remake.py
+    known = {path.split("/")[0] for path in committed() if "/" in path} - {"benchmark"}
+    assert known == {name.split("/")[0] for name in EVERY}
     made = [f for f in made if os.path.basename(f) not in given and "/reference/" not in f]
     assert len(made) > 50
     for path in made:
         makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]
         assert len(makers) == 1, (path, makers)
+
+
+def test_all_is_made_in_two_hours_on_two_cores():
+    made = remake.readMade()
+    minutes = [remake.minutesOf(result, made) for result in EVERY.values()]
+    assert sum(minutes) < 240 and max(minutes) < 60
 
 
 def test_results_come_after_those_that_they_need():
@@ -52,16 +60,21 @@ def tree(tmp_path, monkeypatch):
     writeReference(tmp_path, force=1000.0)
     sources = "validation/one/*.py", "tests/references/rigid*.json"
     programs = ((sys.executable, "validation/one/run.py"),)
-    result = remake.Result("one", programs, sources=sources, results=("one",))
-    places = dict(ROOT=".", HERE="validation", RESULTS="results")
-    places.update(MADE="validation/made.json", README="validation/README.md")
+    result = remake.Result("one", programs, 1, sources=sources, results=("one",))
+    places = dict(ROOT=".", HERE="validation", RESULTS="results", MADE="validation/made.json")
     for name, path in places.items():
         monkeypatch.setattr(remake, name, str(tmp_path / path))
     monkeypatch.setattr(remake, "everything", lambda: {"one": result})
-    (tmp_path / "validation/README.md").write_text("\n".join(["a", *remake.MARKS, "b"]))
+    for path, name in (("README.md", "remake.py"), ("one/README.md", "one")):
+        marks = f"<!-- {name}: begin -->\n<!-- {name}: end -->\n"
+        (tmp_path / "validation" / path).write_text(f"a\n{marks}b")
     for words in ("init -q", "add -A", "-c user.name=a -c user.email=a commit -qm a"):
         assert ran(["git", "-C", str(tmp_path), *words.split()]).returncode == 0
     return tmp_path, result, remake.git("rev-parse", "HEAD")
+
+
+def record(result, commit):
+    remake.record(result, {"fingerprint": remake.fingerprint(result), "minutes": 1}, commit)
 
 
 def state(result):
@@ -71,7 +84,7 @@ def state(result):
 def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_then(tree):
     path, result, commit = tree
     assert state(result) == "unrecorded"
-    remake.record(result, remake.fingerprint(result), 60, commit)
+    record(result, commit)
     assert state(result) == "fresh"
     program = path / "validation/one/run.py"
     program.write_text('"""What it is."""\n# why\n' + program.read_text())
@@ -82,19 +95,22 @@ def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_th
     writeReference(path, force=1000.0)
     program.write_text(program.read_text() + "print(1)\n")
     assert state(result) == "stale"
-    remake.record(result, remake.fingerprint(result), 60, commit)
+    record(result, commit)
     assert state(result) == "fresh"
-    remake.record(result, remake.fingerprint(result), 60, "0000000")  # a commit that git has not
+    record(result, "0000000")  # a commit that git has not
     assert state(result) == "stale"
 
 
-def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
+def test_what_is_stale_is_made_recorded_and_in_the_tables(tree, capfd):
     path, result, commit = tree
     folder = path / "results/one"
     program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
-    (path / "validation/one/run.py").write_text(program + "assert os.path.exists('fine')")
+    program += "assert os.path.exists('fine'); print('so:\\n| a |\\n|---|\\nwell\\n| 1 |\\n'); raise SystemExit(1)"
+    (path / "validation/one/run.py").write_text(program)
     (folder / "old").write_text("of an older state")
     assert remake.main(["--built", commit]) == 1
+    said = capfd.readouterr().out
+    assert "not made: one, exit status 1 of" in said and "made 0 of 1 results" in said
     assert os.listdir(folder) == ["new"]  # what was older is gone
     assert os.path.exists(path / "results/other")
     (folder / "kept").write_text("of the attempt that was stopped")
@@ -102,10 +118,26 @@ def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
     assert remake.main(["--built", commit]) == 0
     assert sorted(os.listdir(folder)) == ["kept", "new"]
     made = json.loads((path / "validation/made.json").read_text())
-    assert made["one"]["commit"] == commit
+    assert made["one"]["commit"] == commit and made["one"]["limits missed"]
     assert f"| fresh | {commit} |" in (path / "validation/README.md").read_text()
+    assert (
+        "begin -->\n| a |\n|---|\n| 1 |\n<!-- one: end"
+        in (path / "validation/one/README.md").read_text()
+    )
     capfd.readouterr()
     assert remake.main(["--built", commit]) == 0
-    assert capfd.readouterr().out == ""  # nothing is stale
+    assert capfd.readouterr().out == "made 0 of 0 results in 0 min\n"  # nothing is stale
     assert remake.main(["--built", commit, "--force", "one"]) == 0
     assert os.listdir(folder) == ["new"]
+
+
+def test_a_failure_stops_only_what_needs_it(tree, monkeypatch):
+    path, result, commit = tree
+    (path / "validation/one/run.py").write_text("import sys; sys.exit(sys.argv[1] == 'bad' and 3)")
+    of = lambda name, *needs: remake.Result(
+        name, ((sys.executable, "validation/one/run.py", name),), 1, needs=needs
+    )
+    every = {r.name: r for r in (of("bad"), of("after", "bad"), of("good"), of("last", "good"))}
+    failed = remake.makeAll([every["last"], *every.values()], every, 2, commit)
+    assert failed["after"] == "needs bad" and failed["bad"].startswith("exit status 3 of")
+    assert set(remake.readMade()) == {"good", "last"}

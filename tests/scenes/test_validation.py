@@ -28,12 +28,12 @@ def test_the_quick_variant_holds_its_limits(case, tmp_path, capsys):
 
 
 def test_a_missed_limit_is_said_and_counted(capsys):
-    limits = {"peak": [1, 2], "drop": [None, 0.5], "band": ["other", None]}
+    limits = {"peak": [1, 2], "drop": [None, 0.5], "band": ["other", None], "fall": [20, None]}
     numbers = {"peak": 1.5, "drop": 0.6, "band": 4}
     assert not validate.check(limits, numbers, lambda case: {"band": len(case)})
-    peak, drop, band = capsys.readouterr().out.splitlines()
+    peak, drop, band, fall = capsys.readouterr().out.splitlines()
     assert peak.endswith("holds") and drop.endswith("MISSED")
-    assert band.endswith("[5, inf]  MISSED")
+    assert band.endswith("[5, inf]  MISSED") and fall.endswith("nan  [20, inf]  MISSED")
 
 
 def test_every_limit_is_an_interval():

@@ -2,11 +2,11 @@
 """What the runs of the walls of bricks say beside the 17 tests, and predictions of all 52;
 README.md says how each number is defined.
 
-/usr/bin/python3 validation/brick_walls/compare.py choose results/brick_walls/choose
-/usr/bin/python3 validation/brick_walls/compare.py predict results/brick_walls/push
+/usr/bin/python3 validation/brick_walls/compare.py choose results/validation/brick_walls/choose
+/usr/bin/python3 validation/brick_walls/compare.py predict results/validation/brick_walls/push
 
 The first prints a table of the rules and what leaving out one campaign says of them; the second
-prints what the predictions say of the 17, and writes predictions.csv where there is none.
+prints what pushes of today say of the 17. predictions.csv stays as it was made blind.
 """
 
 import csv
@@ -22,12 +22,14 @@ import numpy as np
 import results
 from masonry.numbers.files import readCurve
 
-PREDICTIONS = os.path.join(assumed.HERE, "predictions.csv")  # made blind; stays as it is
+sys.path.insert(0, os.path.dirname(assumed.HERE))
+import studies
+
 SHARES = 0.8, 0.9  # of the strength in flexure, from which a wall does not fail in shear [-]
 CHOSEN = SHARES[0]
 KEPT = 1.99  # drift at which a push ended that kept its force [%]
 NAMES = "peak", "stiffness", "bilinear", "atPeak", "ultimate"
-HEADS = "peak_kN", "stiffness_kN_per_mm", "Vbil_kN", "drift_peak_percent", "drift_ultimate_percent"
+COMPARED = [*NAMES, "stiffness, E measured", *(f"modes right, share {s}" for s in SHARES)]
 LETTERS = {"flexure": "F", "shear": "S", "sliding": "S"}
 
 
@@ -111,7 +113,7 @@ def compared(numbers, tests):
     cells = []
     for name in NAMES:
         mean, cov = results.spread([numbers[w][name] / own[name] for w, own in tests.items()])
-        cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
+        cells.append(f"{mean:.2f} ({100 * cov:.1f} %)")
     of = [w for w in tests if walls[w].E]
     cells.append(f"{fmean(numbers[w]['stiffness'] / tests[w]['stiffness'] for w in of):.2f}")
     for share in SHARES:
@@ -128,23 +130,21 @@ def choose(folder):
     """Print how each rule does, and which one the walls of all but one campaign would choose."""
     tests, walls = measured(), assumed.read()
     found = {r: of for r, of in runs(folder).items() if set(of) >= set(tests)}
-    print(f"| rule | {' | '.join(NAMES)} | stiffness, E measured | modes, {SHARES} |")
-    for rule, of in found.items():
-        print(f"| {rule} | {' | '.join(map(str, compared(of, tests)))} |")
+    rows = [[rule, *compared(of, tests)] for rule, of in found.items()]
     for rule, prediction in said(tests).items():
-        ratios = [prediction[w].peak / tests[w]["peak"] for w in tests]
+        mean, cov = results.spread([prediction[w].peak / tests[w]["peak"] for w in tests])
         right = sum(LETTERS[prediction[w].failure] == tests[w]["mode"] for w in tests)
-        mean, cov = results.spread(ratios)
-        print(f"| {rule} | {mean:.2f} ({100 * cov:.0f} %) | modes right {right} |")
-    print("coefficient of variation of peaks, all and without one campaign:")
-    campaigns = sorted({walls[w].campaign for w in tests})
+        rows.append([rule, f"{mean:.2f} ({100 * cov:.1f} %)", *[""] * len(NAMES), right, ""])
+    print(studies.table(["rule", *COMPARED], rows), end="\n\n")
+    campaigns, rows = sorted({walls[w].campaign for w in tests}), []
     for rule, of in found.items():
         without = [
             scatter(of, {w: t for w, t in tests.items() if walls[w].campaign != one})
             for one in campaigns
         ]
-        print(rule, f"{scatter(of, tests):.1f};", " ".join(f"{one:.1f}" for one in without))
-    print("campaigns:", ", ".join(campaigns))
+        rows.append([rule, *(f"{one:.1f}" for one in (scatter(of, tests), *without))])
+    heads = ["scatter of peaks %", "all", *(f"without {one}" for one in campaigns)]
+    print(studies.table(heads, rows))
     for wall, own in tests.items():
         ratios = [f"{of[wall]['peak'] / own['peak']:.2f}" for of in found.values()]
         mode = modeOf(found["base"][wall], walls[wall])
@@ -173,30 +173,19 @@ def errors(made, tests):
 
 
 def predict(folder):
-    """Write predictions.csv and print what it says of the 17."""
+    """Print what the chosen rule says of the 17."""
     (made,) = runs(folder).values()
-    tests, walls = measured(), assumed.read()
+    tests = measured()
     error = errors(made, tests)
-    head = ["N", "ref", "wall", "mode", "peak_plus_kN", "peak_minus_kN"]
-    for name in HEADS:
-        head += [name, name.rpartition("_")[0] + "_from", name.rpartition("_")[0] + "_to"]
-    lines, held = [], dict.fromkeys(NAMES, 0)
-    for number, row in walls.items():
-        numbers = made[number]
-        prediction = results.Prediction(numbers, numbers, numbers, 1, (), {})
-        ends = results.expected(prediction, error)
-        line = [number, row.campaign, row.name, modeOf(numbers, row)]
-        line += 2 * [f"{numbers['peak']:.1f}"]
-        for name in NAMES:
-            line += [f"{value:.3g}" for value in (numbers[name], *ends[name])]
-            if number in tests:
-                held[name] += ends[name][0] <= tests[number][name] <= ends[name][1]
-        lines.append(line)
-    if not os.path.exists(PREDICTIONS):
-        with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
-            csv.writer(f, lineterminator="\n").writerows([head, *lines])
-    print(NAMES, *compared(made, tests), "held", held)
-    print({name: f"{math.exp(m):.2f}, {s:.2f}" for name, (m, s) in error.items()})
+    held = dict.fromkeys(NAMES, 0)
+    for number, own in tests.items():
+        ends = results.expected(results.Prediction(*3 * [made[number]]), error)
+        for name, (low, high) in ends.items():
+            held[name] += low <= own[name] <= high
+    print(studies.table(["rule", *COMPARED], [["chosen", *compared(made, tests)]]), end="\n\n")
+    rows = [[n, f"{math.exp(m):.2f}", f"{s:.2f}", held[n]] for n, (m, s) in error.items()]
+    heads = "number, measured over predicted, deviation of its logarithm, intervals that hold"
+    print(studies.table(heads.split(", "), rows))
 
 
 if __name__ == "__main__":

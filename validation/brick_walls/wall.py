@@ -12,7 +12,7 @@ import assumed
 import pushed
 from masonry.scene import options
 
-parser = options.parser(__doc__, until=1)
+parser = options.parser(__doc__, until=None)
 parser.add_argument("--wall", metavar="N", required=True, help="number of the wall in walls.csv")
 parser.add_argument("--rule", choices=list(assumed.RULES), default=assumed.CHOSEN)
 args = parser.parse_args()

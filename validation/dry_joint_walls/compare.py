@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The dry-joint walls against their tests, from the runs of this case: envelopes.png and a table on
+"""The dry-joint walls against their tests, from the runs of this case: envelopes.png and tables on
 the terminal.
 
 /usr/bin/python3 validation/validate.py dry_joint_walls
@@ -9,6 +9,7 @@ the terminal.
 import csv
 import glob
 import os
+import sys
 
 import matplotlib
 
@@ -18,8 +19,11 @@ import numpy as np
 from masonry.numbers.files import readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import studies
+
 REFERENCE = os.path.join(HERE, "reference")
-RESULTS = os.path.join(HERE, "..", "..", "results", "validation", "dry_joint_walls")
+RESULTS = os.path.join(studies.RESULTS, "validation", "dry_joint_walls")
 LEVELS = (100, 175, 250)  # [kN]
 START = 6  # [mm] shown of the first displacements
 MODELS = {"rigid": "tab:red", "deformable": "tab:blue"}
@@ -129,29 +133,32 @@ def draw():
     figure.savefig(os.path.join(HERE, "envelopes.png"), dpi=75)
 
 
-def table():
-    print("level  measured: V+, V-, mean, secant at 1/4, 1/2 of the peak    rigid rocking")
+def tables():
+    """Print peaks and secant stiffnesses of the tests, by level, and of the runs."""
+    print(
+        "| level kN | V+, V−, mean kN | secant at 1/4, 1/2 of the peak, kN/mm | rigid rocking kN |"
+    )
+    print("|---|---|---|---|")
     for level in LEVELS:
-        positive, negative = peaks(level).mean(axis=0)
-        mean = (positive + negative) / 2
-        quarter, half = (measuredSecants(level, share).mean() for share in (0.25, 0.5))
-        print(
-            f"{level:5}  {positive:.1f} {negative:.1f} {mean:.1f} kN "
-            f" {quarter:.1f} {half:.1f} kN/mm  {rocking(computed(f'rigid-{level}')[2]):.1f} kN"
-        )
-    print("run                 peak kN  over V+, V-, mean    secant 1/4, 1/2 kN/mm")
-    for directory in sorted(glob.glob(os.path.join(RESULTS, "*", "run.json"))):
-        name = os.path.basename(os.path.dirname(directory))
-        moved, shear, run = computed(name)
-        level = run["options"]["level"]
-        positive, negative = peaks(level).mean(axis=0)
-        ratios = shear.max() / np.array([positive, negative, (positive + negative) / 2])
-        print(
-            f"{name:20} {shear.max():6.1f}  {ratios[0]:.3f} {ratios[1]:.3f} {ratios[2]:.3f}"
-            f"  {secant(moved, shear, 0.25):7.1f} {secant(moved, shear, 0.5):.1f}"
-        )
+        sides = peaks(level).mean(axis=0)
+        secants = [measuredSecants(level, share).mean() for share in (0.25, 0.5)]
+        rigid = rocking(computed(f"rigid-{level}")[2])
+        print(f"| {level} | {some([*sides, sides.mean()])} | {some(secants)} | {rigid:.1f} |")
+    print("\n| run | peak kN | over V+, V−, mean | secant at 1/4, 1/2 of the peak, kN/mm |")
+    print("|---|---|---|---|")
+    for name in studies.readCase("dry_joint_walls"):
+        if name != "quick":
+            moved, shear, run = computed(name)
+            sides = peaks(run["options"]["level"]).mean(axis=0)
+            ratios = shear.max() / np.array([*sides, sides.mean()])
+            secants = [secant(moved, shear, share) for share in (0.25, 0.5)]
+            print(f"| {name} | {shear.max():.1f} | {some(ratios, 2)} | {some(secants)} |")
+
+
+def some(values, digits=1):
+    return ", ".join(f"{value:.{digits}f}" for value in values)
 
 
 if __name__ == "__main__":
-    table()
+    tables()
     draw()

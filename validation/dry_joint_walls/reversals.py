@@ -44,14 +44,12 @@ MACHINE = dict(friction=0.05, uplift=1.4)
 RUNS = {
     "paper's law": ("WS2175", "softening", {}),
     "paper's law, friction": ("WS2175", "softening", dict(friction=0.05)),
-    "paper's law, friction and stiffness": ("WS2175", "softening", MACHINE),
     "paper's law, friction, stiffness and soft guides": (
         "WS2175",
         "softening",
         dict(**MACHINE, guides=11),
     ),
     "cyclic law, `blind.json`": ("WS2175", "cyclic", {}),
-    "cyclic law, friction and stiffness": ("WS2175", "cyclic", MACHINE),
     "in mortar, paper's law": (measured.DRIVEN, "softening", {}),
     "in mortar, paper's law, friction and stiffness": (measured.DRIVEN, "softening", MACHINE),
 }

@@ -26,6 +26,7 @@ sys.path[:0] = FOLDERS  # yade leaves it out
 import measured  # noqa: E402
 import compare_loops  # noqa: E402
 import rules  # noqa: E402
+import studies  # noqa: E402
 
 BLOCK, LOAD_HEIGHT = (0.200, 0.200, 0.150), 1.325  # [m], as of scripts/gallery/wall_dry.py
 
@@ -80,17 +81,18 @@ scene.finish()
 moved, force = compare_loops.calculated(scene.results.directory)
 own = loops.cycles(moved, force, measured.THRESHOLD)[0]
 (test, _), *_ = measured.cycles(WALL)
-print(f"{WALL}: test, calculated")
-print(
-    f"stiffness of the first cycle kN/mm: {test.stiffness_kN_per_mm:.1f},"
-    f" {own.stiffness_kN_per_mm:.1f}"
-)
 there = measured.curve(WALL)[1]
 ends = measured.peaks(level).get(WALL) or (there.max(), -there.min())
-print(f"V+, V- kN: {ends[0]:.1f}, {ends[1]:.1f}; {force.max():.1f}, {-force.min():.1f}")
+heads = ["base of kN/mm", "stiffness of the first cycle kN/mm", "V+, V− kN"]
+first = ["test", f"{test.stiffness_kN_per_mm:.1f}", f"{ends[0]:.1f}, {ends[1]:.1f}"]
+second = [f"{args.rig:g}", f"{own.stiffness_kN_per_mm:.1f}"]
+second += [f"{force.max():.1f}, {-force.min():.1f}"]
 cycles = compare_loops.pairs(WALL, moved, force)
 for low, high in compare_loops.RANGES:
     work = np.array([c.work for c in cycles if low <= c.amplitude < high])
     if len(work):
         test, own = work.mean(axis=0)
-        print(f"work J a cycle, {low:g} to {high:g} mm: {test:.0f}, {own:.0f} ({own / test:.2f})")
+        heads.append(f"work J a cycle, {low:g}–{high:g} mm")
+        first.append(f"{test:.0f}")
+        second.append(f"{own:.0f} ({own / test:.2f})")
+print(studies.table(heads, [first, second]))

@@ -93,7 +93,7 @@ def main(description, names, cases):
 
     :param names: heads of the columns between the name of the case and its processor time
     :param cases: dict from name to a function without arguments that gives the cells
-    :returns: whether one failed
+    :returns: the exit status, 2 if one failed
     """
     options = argparse.ArgumentParser(description=description)
     options.add_argument(
@@ -116,4 +116,4 @@ def main(description, names, cases):
             cells, bad = ["failed"], True
         seconds = f"{time.process_time() - began:.0f}"
         print(line([name, *map(number, cells), seconds]), flush=True)
-    return bad
+    return 2 * bad

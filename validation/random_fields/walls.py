@@ -14,14 +14,14 @@ BONDS = (
 
 
 def walls(length):
-    """300 walls COMP-4 with a lognormal field of bond strengths about those of the scene.
+    """100 walls COMP-4 with a lognormal field of bond strengths about those of the scene.
 
     :param length: correlation length [m]
     """
     return Study(
         "wall_comp4",
         options={"preset": "fast", "until": 6},
-        runs=300,
+        runs=100,
         seed=1,
         vary={BONDS: field(cov=0.3, length=length)},
     )

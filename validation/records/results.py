@@ -20,6 +20,9 @@ from masonry_study.incremental import Measure
 from masonry_study.records import Record
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import studies
+
 #: Of every structure the point whose largest displacement out of the plane is the demand, and half
 #: the thickness [mm].
 POINTS = {"parapet": ("crest", 100), "gable": ("ridge", 150), "facade": ("top", 200)}
@@ -48,25 +51,21 @@ def fits(found, folder, limit=None):
     return made
 
 
-def tell(name, made):
-    """Print median and dispersion with their intervals, for every measure of intensity."""
+def medians(name, made):
+    """Rows of a table: median and dispersion with their intervals, by the measure of intensity."""
     for measure, fit in made.items():
         numbers = [
             f"{one.value:.2f} ({one.low:.2f} … {one.high:.2f})"
             for one in (fit.median, fit.dispersion)
         ]
-        print(f"| {name} | {measure} | {' | '.join(numbers)} | {fit.reached} of {fit.records} |")
+        yield [name, measure, *numbers, f"{fit.reached} of {fit.records}"]
 
 
 def demands(name, found):
-    """Print the level at which every record makes a structure fall, and the quantiles of the demand
-    at every level [mm]."""
-    print(f"{name}: falls at {', '.join(f'{level:g}' for level in found.fell)} g")
+    """Rows of a table: quantiles of the demand at every level [mm]."""
     for level, fell, known in found.counts():
-        print(
-            f"| {level:g} | {' | '.join(f'{q:.0f}' for q in found.quantiles(level))} | {fell} of"
-            f" {known} |"
-        )
+        quantiles = [f"{q:.0f}" for q in found.quantiles(level)]
+        yield [name, f"{level:g}", *quantiles, f"{fell} of {known}"]
 
 
 def draw(path, all):
@@ -92,7 +91,7 @@ def draw(path, all):
 
 def main(folder):
     """The program."""
-    all = {}
+    all, fitted, moved = {}, [], []
     for name, (point, half) in POINTS.items():
         place = os.path.join(folder, name)
         try:
@@ -101,9 +100,13 @@ def main(folder):
         except Refused as refused:
             print(refused)
             continue
-        tell(f"{name}, falls", all[name][1])
-        tell(f"{name}, {half} mm", fits(found, place, half))
-        demands(name, found)
+        fitted += medians(f"{name}, falls", all[name][1])
+        fitted += medians(f"{name}, {half} mm", fits(found, place, half))
+        moved += demands(name, found)
+    heads = "structure and limit, measure, median, dispersion, records that reach it"
+    print(studies.table(heads.split(", "), fitted), end="\n\n")
+    heads = "structure, PGA g, 16 % mm, 50 % mm, 84 % mm, fell"
+    print(studies.table(heads.split(", "), moved))
     models = {name: made["PGA_g"] for name, (_, made) in all.items()}
     highest = max(found.levels[-1] for found, _ in all.values())
     written(

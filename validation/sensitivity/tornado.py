@@ -44,7 +44,39 @@ def joint(name, *settings):
     return " ".join(f"--set {name}.{s}" for s in settings)
 
 
+STIFF, SOFTER = "normalStiffness=1.157e11", "shearStiffness=4.986e10"  # of the modulus of table 2
+
 ROWS = [
+    Row("rate 20…100 mm/s", "", "--rate 20", "--rate 100", "numerical choices alone"),
+    Row("points where a joint yields 3…12", 8, "--points 3", "--points 12", "the same"),
+    Row(
+        "time step 0.76…0.78 of its limit",
+        0.8,
+        "--dt-fraction 0.76",
+        "--dt-fraction 0.78",
+        "chance",
+    ),
+    Row(
+        "stiffness by the modulus of table 2",
+        "eq. (26)",
+        " ".join(
+            (
+                joint("bed", STIFF, SOFTER, "peakRatio=23.64"),
+                joint("head", "normalStiffness=1.865e10", "shearStiffness=8.038e9"),
+                joint("head", "peakRatio=3.811"),
+                joint("support", STIFF, SOFTER),
+            )
+        ),
+        "",
+        "table 2: 3174 MPa across bed and 2212 MPa across head joints",
+    ),
+    Row(
+        "softening by rate, crushing with shear on the cap",
+        "the paper's",
+        "",
+        "--joints cyclic " + bonds("compressionStiffnessLoss=0", "bondLossByCrushing=0"),
+        "the cyclic law without its losses",
+    ),
     # what the paper leaves open: yade_plugin/law/README.md, parameters
     Row(
         "GfI 8…32 J/m²",

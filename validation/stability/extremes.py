@@ -37,7 +37,7 @@ SCRIPT = sys.argv[0] if __name__ == "__main__" else __file__  # yade has its own
 HERE = os.path.dirname(os.path.abspath(SCRIPT))
 sys.path[:0] = [os.path.join(os.path.dirname(HERE), "statics"), HERE]
 from statics import ROUND_OFF, Wrong, checkColumns, checkNewton  # noqa: E402
-from stability import SHARE  # noqa: E402
+from stability import SHARE, table  # noqa: E402
 
 MOST_STEPS = 400000  # of a scene
 PLATEN = 1800  # kg/m³, of the blocks that load a structure
@@ -777,7 +777,8 @@ def main():
         if args.said:
             print(found["said"])
     counts = collections.Counter(found["class"] for found in results)
-    print(", ".join(f"{counts[name]} {name}" for name in CLASSES.split(", ")))
+    names = CLASSES.split(", ")
+    print(table(["scenes", *names], [[len(results), *(counts[name] for name in names)]]))
     raise SystemExit(1 if counts["failed"] else 0)
 
 

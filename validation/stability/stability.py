@@ -265,7 +265,6 @@ AXES = {
     "cycles of so many mm, the cyclic law": points(
         [0.05, 0.2, 1, 3], lambda v: cycles(v, "cyclic")
     ),
-    "drawn from all axes": points(range(20), drawn),
 }
 
 

@@ -35,9 +35,9 @@ COLOURS = {
 SHOWN = ("EN 1998-3:2005", "NTC 2018")
 
 
-def peaks(studies):
-    """peaks.png, of two studies."""
-    _peaks(results.predictions(*studies), results.measured(), "peaks.png")
+def peaks(study):
+    """peaks.png, of a study."""
+    _peaks(results.predictions(*study), results.measured(), "peaks.png")
 
 
 def opened(_):
@@ -51,14 +51,17 @@ def _peaks(made, tests, name):
     walls = rules.read()
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}
     figure, panels = plt.subplots(1, 3, figsize=(11, 4), sharey=True, constrained_layout=True)
-    for panel, title in zip(panels, ("this model, 10 to 90 %", *SHOWN)):
+    for panel, title in zip(panels, ("this model", *SHOWN)):
         for wall, test in tests.items():
             own, colour = made[wall], COLOURS[walls[wall].typology]
             if title in SHOWN:
                 panel.plot(test["peak"], said[wall][title].peak, "o", color=colour, markersize=4)
                 continue
             best = own.best["peak"]
-            ends = [[max(best - own.low["peak"], 0)], [max(own.high["peak"] - best, 0)]]
+            ends = own.low and [
+                [max(best - own.low["peak"], 0)],
+                [max(own.high["peak"] - best, 0)],
+            ]
             panel.errorbar(
                 test["peak"], best, ends, fmt="o", color=colour, markersize=4, linewidth=0.8
             )

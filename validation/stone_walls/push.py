@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""All walls, each pushed as often as its interval needs. A file for masonry_study; README.md says
-how."""
+"""The best estimates of all walls, pushed to the right and to the left. A file for masonry_study;
+README.md says how."""
 
 import os
 import sys
@@ -14,6 +14,6 @@ study = Study(
     design="grid",
     vary={
         "wall": list(rules.twins([*rules.read()])),
-        "sample": list(range(rules.SAMPLES + 2)),
+        "sample": [0, 1],
     },
 )

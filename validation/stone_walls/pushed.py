@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A wall of a database on its platens, pushed until it has lost half of its force, or in cycles."""
+"""A wall of a database on its platens, pushed until it has lost half of its force."""
 
 import math
 
@@ -12,14 +12,13 @@ STEP = 0.25  # drift from one look at the force to the next [%]
 RATE = 30
 
 
-def carryOut(name, guess, args, farthest=4.0, cyclic=False, side=1):
+def carryOut(name, guess, args, farthest=4.0, side=1):
     """Build a wall, load it and push it.
 
     :param name: of the scene
     :param guess: :class:`rules.Guess`
     :param args: options of the scene
     :param farthest: drift at which a push ends [%]
-    :param cyclic: whether it goes in cycles of the drifts of the guess
     :param side: 1 or -1, of a push
     """
     row = guess.row
@@ -37,17 +36,12 @@ def carryOut(name, guess, args, farthest=4.0, cyclic=False, side=1):
     scene.press(top, guess.pressure, riding=False)
     scene.settle(damping="local", record=False)
     rate = RATE * math.sqrt(guess.E / 1e9)
-    drifts = guess.drifts if cyclic else [STEP * n for n in range(1, 1 + round(farthest / STEP))]
-    peak, seen = 0.0, 0
-    for n, drift in enumerate(drifts):
-        away = 1e1 * drift * row.height  # [mm]
-        if cyclic:
-            ended = scene.cycle(top, [away], rate=2 * rate)
-        else:
-            ended = scene.push(top, away, direction=(side, 0, 0), rate=rate, continued=n > 0)
-        shear = scene.results.column("base_shear_kN")  # along the push
-        force = max(shear[seen:]) if cyclic else shear[-1]
-        seen, peak = len(shear), max(peak, force)
+    peak = 0.0
+    for n in range(1, 1 + round(farthest / STEP)):
+        away = 1e1 * STEP * n * row.height  # [mm]
+        ended = scene.push(top, away, direction=(side, 0, 0), rate=rate, continued=n > 1)
+        force = scene.results.column("base_shear_kN")[-1]  # along the push
+        peak = max(peak, force)
         if ended == "collapsed" or force < LOST * peak:
             break
     scene.finish()

@@ -2,13 +2,11 @@
 """What the runs of the stone walls say, and what was measured; README.md says how each number is
 defined.
 
-/usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose
-/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/{push,cycles}
+/usr/bin/python3 validation/stone_walls/results.py results/validation/stone_walls/push
 /usr/bin/python3 validation/stone_walls/results.py --opened
 
-The first compares the eight combinations of rules; the second writes table.md;
-the third compares predictions.csv with the 57 walls whose results came afterwards, in opened.md.
-The second writes predictions.csv only where there is none: it stays as it was made blind.
+The first compares runs of today with the 39 known walls, in table.md; the second predictions.csv,
+as it was made blind, with the 57 walls whose results came afterwards, in opened.md.
 """
 
 import argparse
@@ -25,7 +23,7 @@ import codes
 import numpy as np
 import rules
 from masonry.numbers import curves
-from masonry.numbers.files import readCurve, readRun
+from masonry.numbers.files import readCurve
 
 FLEXURE = 0.8  # least peak over the strength in flexure of a wall that fails in flexure [-]
 LOST, COLLAPSED = (
@@ -168,76 +166,33 @@ def spread(ratios):
     return mean, (stdev(ratios) / mean if len(ratios) > 1 else math.nan)
 
 
-def choose(folder):
-    """Print how each combination of rules does on the walls with results."""
-    tests, found = measured(), {}
-    for values, numbers in runs(folder):
-        key = values["bond"], values["stiffness"]
-        found.setdefault(key, {})[values["wall"]] = numbers
-    print(
-        "| bond | stiffness | walls | peak | effective stiffness | initial stiffness | ultimate"
-        " drift | failure right |"
-    )
-    print("|---|---|---|---|---|---|---|---|")
-    for (bond, stiffness), of in found.items():
-        cells = []
-        for name in ("peak", "effective", "elastic", "ultimate"):
-            mean, cov = spread([getattr(n, name) / tests[w][name] for w, n in of.items()])
-            cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
-        right = sum(n.failure(w) == tests[w]["failure"] for w, n in of.items())
-        print(f"| {bond} | {stiffness} | {len(of)} | {' | '.join(cells)} | {right} |")
-
-
 # -- predictions -----------------------------------------------------------------------------------
 
 
 @dataclass
 class Prediction:
-    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of
-    :class:`Numbers`, how many draws carried the vertical load, peaks to both sides, and what its
-    cycles say, by the law."""
+    """Of one wall: the best estimate and, where it was made blind, the 10 and 90 % quantiles of
+    every name of :class:`Numbers`."""
 
     best: dict
-    low: dict
-    high: dict
-    draws: int
-    sides: tuple
-    cycles: dict
+    low: dict | None = None
+    high: dict | None = None
 
 
-def predictions(pushes, cycles):
-    """The :class:`Prediction` of every wall.
+def predictions(pushes):
+    """The :class:`Prediction` of every wall without its interval.
 
-    :param pushes: folder of the study push.py; ``cycles``: of cycles.py
+    :param pushes: folder of the study push.py
     """
-    found, loops = {}, {}
+    found, made = {}, {}
     for values, numbers in runs(pushes):
-        found.setdefault(values["wall"], {})[int(values["sample"])] = numbers
-    for values, folder in rows(cycles):
-        loops.setdefault(values["wall"], {})[values["joints"]] = ofCycles(folder)
-    made = {}
+        found.setdefault(values["wall"], []).append(numbers)
     for wall, samples in found.items():
-        best, low, high = {}, {}, {}
-        firsts = [n for n in (0, 1) if n in samples] or [*samples]
-        for name in NAMES:
-            own = [getattr(numbers, name) for numbers in samples.values()]
-            ends = quantiles(own if len(own) > 1 else 2 * own, n=10, method="inclusive")
-            low[name], high[name] = ends[0], ends[-1]
-            best[name] = fmean(getattr(samples[n], name) for n in firsts)
+        best = {name: fmean(getattr(one, name) for one in samples) for name in NAMES}
         # two best estimates that differ are the hybrid of both
-        best["failure"] = fmean(samples[n].failure(wall) for n in firsts)
-        best["failure"] = round(2 * best["failure"]) / 2
-        sides = [_peakOf(samples, side) for side in (0, 1)]
-        made[wall] = Prediction(best, low, high, len(samples), sides, loops.get(wall, {}))
+        best["failure"] = round(2 * fmean(one.failure(wall) for one in samples)) / 2
+        made[wall] = Prediction(best)
     return made
-
-
-def _peakOf(samples, side):
-    """The peak to a side: of its best estimate, else of its other draws, else of all [kN]."""
-    own = [samples[n].peak for n in samples if n % 2 == side]
-    return (
-        samples[side].peak if side in samples else fmean(own or [n.peak for n in samples.values()])
-    )
 
 
 def errors(made):
@@ -263,57 +218,6 @@ def expected(prediction, error):
     return found
 
 
-def ofCycles(folder):
-    """Work of all cycles [J], mean damping ratio of those from 0.2 % on [-], and the last residual
-    displacement [mm]."""
-    cycles = readRun(folder).get("cycles")
-    if not cycles:  # the wall fell before or within the first one
-        return None
-    damping = [one["damping"] for one in cycles[1:] if one["damping"] is not None]
-    residuals = [cycles[-1][f"residual_{side}_mm"] for side in ("positive", "negative")]
-    return dict(
-        work=sum(one["work_J"] for one in cycles),
-        damping=fmean(damping) if damping else math.nan,
-        residual=max(abs(value or 0.0) for value in residuals),
-    )
-
-
-def write(made):
-    """predictions.csv: a row a wall."""
-    walls, lines, error = rules.read(), [], errors(made)
-    head = [
-        "ID",
-        "campaign",
-        "wall",
-        "draws",
-        "failure",
-        "peak_plus_kN",
-        "peak_minus_kN",
-    ]
-    for name in NAMES:
-        unit = UNITS[name].replace("/", "_per_").replace("%", "percent")
-        head += [f"{name}_{unit}"] + [f"{name}_{end}" for end in ("low", "high", "from", "to")]
-    head += [
-        f"{what}_{law}"
-        for what in ("work_J", "damping", "residual_percent")
-        for law in ("paper", "cyclic")
-    ]
-    for number, row in walls.items():
-        own = made[number]
-        line = [number, row.campaign, row.name, own.draws, TYPES[own.best["failure"]]]
-        ends = expected(own, error)
-        line += [f"{peak:.1f}" for peak in own.sides]
-        for name in NAMES:
-            cells = own.best[name], own.low[name], own.high[name], *ends[name]
-            line += [f"{value:.3g}" for value in cells]
-        for what, scale in (("work", 1.0), ("damping", 1.0), ("residual", 0.1 / row.height)):
-            laws = [own.cycles.get(law) for law in ("softening", "cyclic")]
-            line += [f"{scale * one[what]:.3g}" if one else "" for one in laws]
-        lines.append(line)
-    with open(PREDICTIONS, "w", encoding="utf-8", newline="") as f:
-        csv.writer(f, lineterminator="\n").writerows([head, *lines])
-
-
 def table(made, tests):
     """Lines of a table: mean and coefficient of variation of predicted over measured, by typology
     and for all.
@@ -331,6 +235,24 @@ def table(made, tests):
     for name in NAMES:
         cells = [cell([made[w].best[name] / tests[w][name] for w in of(k)]) for k in kinds]
         yield f"| this model: {MEANINGS[name]} | {' | '.join(cells)} |"
+    if all(one.low for one in made.values()):
+        yield from _within(made, tests, kinds, of)
+    right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
+    yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
+    said = {row["ID"]: codes.predict(row) for row in codes.rows()}
+    for rule in codes.RULES:
+        peaks = {w: said[w][rule].peak for w in tests}
+        drifts = {w: said[w][rule].drift for w in tests}
+        for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):
+            if any(own.values()):
+                cells = [cell([own[w] / tests[w][name] for w in of(k) if own[w]]) for k in kinds]
+                yield f"| {rule}: {what} | {' | '.join(cells)} |"
+        right = lambda k: sum(_type(said[w][rule]) == tests[w]["failure"] for w in of(k))
+        yield f"| {rule}: failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
+
+
+def _within(made, tests, kinds, of):
+    """Lines of a table: how many tests lie within the intervals of their walls."""
     error = errors(made)
     known = {w: expected(made[w], error) for w in tests}
     for name in ("peak", "ultimate"):
@@ -348,18 +270,6 @@ def table(made, tests):
             f"| {MEANINGS[name]} within that and the error of the model |"
             f" {' | '.join(str(wide(k)) for k in kinds)} |"
         )
-    right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
-    yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
-    said = {row["ID"]: codes.predict(row) for row in codes.rows()}
-    for rule in codes.RULES:
-        peaks = {w: said[w][rule].peak for w in tests}
-        drifts = {w: said[w][rule].drift for w in tests}
-        for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):
-            if any(own.values()):
-                cells = [cell([own[w] / tests[w][name] for w in of(k) if own[w]]) for k in kinds]
-                yield f"| {rule}: {what} | {' | '.join(cells)} |"
-        right = lambda k: sum(_type(said[w][rule]) == tests[w]["failure"] for w in of(k))
-        yield f"| {rule}: failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
 
 
 def _type(prediction):
@@ -372,7 +282,7 @@ SHOWN = "peak", "effective", "ultimate"  # whose intervals opened.md has
 
 
 def predicted():
-    """predictions.csv, as :func:`predictions` gave it: dict of :class:`Prediction` by wall."""
+    """predictions.csv: dict of :class:`Prediction` by wall."""
     column = lambda name: f"{name}_{UNITS[name].replace('/', '_per_').replace('%', 'percent')}"
     types = {text: value for value, text in TYPES.items()}
     made = {}
@@ -381,8 +291,7 @@ def predicted():
             of = lambda head: {name: float(cells[head(name)]) for name in NAMES}
             best = {**of(column), "failure": types[cells["failure"]]}
             ends = (of(lambda name: f"{name}_{end}") for end in ("low", "high"))
-            sides = float(cells["peak_plus_kN"]), float(cells["peak_minus_kN"])
-            made[cells["ID"]] = Prediction(best, *ends, int(cells["draws"]), sides, {})
+            made[cells["ID"]] = Prediction(best, *ends)
     return made
 
 
@@ -472,18 +381,12 @@ def _afterwards(made, tests):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--choose", metavar="STUDY")
     parser.add_argument("--opened", action="store_true")
-    parser.add_argument("studies", nargs="*", help="of push.py and of cycles.py")
+    parser.add_argument("study", nargs="?", help="of push.py")
     args = parser.parse_args()
     if args.opened:
         with open(os.path.join(HERE, "opened.md"), "w", encoding="utf-8") as f:
             f.write("".join(line + "\n" for line in opened()))
-    if args.choose:
-        choose(args.choose)
-    if args.studies:
-        made = predictions(*args.studies)
-        if not os.path.exists(PREDICTIONS):
-            write(made)
+    if args.study:
         with open(os.path.join(HERE, "table.md"), "w", encoding="utf-8") as f:
-            f.write("".join(line + "\n" for line in table(made, measured())))
+            f.write("".join(line + "\n" for line in table(predictions(args.study), measured())))

@@ -25,8 +25,6 @@ LOWEST = (
     0.01  # least height of the force of a drive above a wall, the thickness of what it pushes [m]
 )
 POINTS = ("8", "5", "12")  # along a joint, by turns
-#: Drifts of the cycles [%].
-DRIFTS = (0.1, 0.2, 0.4, 0.6, 1.0, 1.5, 2.0)
 
 #: Rows of table C8.5.I of Circolare 2019 by typology, and what their mean values say; E1 is E
 #: without mortar.
@@ -190,7 +188,6 @@ class Guess:
     def __init__(self, row, bond, stiffness, sample):
         self.row, self.sample = row, sample
         self.points = POINTS[sample % len(POINTS)]
-        self.drifts = DRIFTS
         self.factors = {name: self._factor(name) for name in SCATTER}
         self.cohesion, self.friction = BONDS[bond](row)
         self.cohesion *= self.factors["bond"]

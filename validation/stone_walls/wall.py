@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One of the 96 stone walls of reference/walls.csv, pushed until it has lost half of its force, or
-in cycles.
+"""One of the 96 stone walls of reference/walls.csv, pushed until it has lost half of its force.
 
 Its joints, stones and scatter come from rules.py; README.md says how.
 """
@@ -13,7 +12,7 @@ import pushed
 import rules
 from masonry.scene import options
 
-parser = options.parser(__doc__, until=1)
+parser = options.parser(__doc__, until=None)
 parser.add_argument(
     "--wall", metavar="ID", required=True, help="number of the wall in reference/walls.csv"
 )
@@ -26,10 +25,9 @@ parser.add_argument(
 )
 parser.add_argument("--bond", choices=list(rules.BONDS), default=rules.CHOSEN[0])
 parser.add_argument("--stiffness", choices=list(rules.STIFFNESSES), default=rules.CHOSEN[1])
-parser.add_argument("--cyclic", type=int, default=0, help="1: in cycles")
 args = parser.parse_args()
 
 row = rules.read()[args.wall]
 guess = rules.Guess(row, args.bond, args.stiffness, args.sample)
 side = -1 if args.sample % 2 else 1  # of the push; stones are not symmetrical
-pushed.carryOut(f"stone_wall_{args.wall}", guess, args, cyclic=args.cyclic, side=side)
+pushed.carryOut(f"stone_wall_{args.wall}", guess, args, side=side)

@@ -151,7 +151,7 @@ _ROWS = (
         " face, so through the thickness at its faces and thirds, whatever N"
     ),
     Option("damping_kind", oneOf("local", "combined"), default="combined", chosen=True).means(
-        "local damping (the paper's eq. (3)), which brakes a push, as validation/convergence"
+        "local damping (the paper's eq. (3)), which brakes a push, as validation/trade"
         " measures, or combined damping, which does not brake a steady motion"
     ),
     Option("points", points, value="N", chosen=True).means(
@@ -159,7 +159,7 @@ _ROWS = (
         " open, at its ends and between them (Gauss-Lobatto), in space along each side of its face"
         " that does; None: 8, 5 in space, and 14 where it opens on a compliant bed. Until"
         " then a joint has three, with which an elastic joint is exact; N,M gives all joints M"
-        " points from the beginning. How few are enough: validation/convergence"
+        " points from the beginning. How few are enough: validation/sensitivity"
     ),
     Option("damping", damping, 0.8, "A", chosen=True).means(
         "damping constant, the paper's eq. (3) [-]"
