@@ -233,6 +233,8 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
 @mark.parametrize("side", [1, -1])
 def test_a_wave_at_the_base_is_no_collapse(side):
     at = pushing.Pushing(moved=2.0 * side)
+    assert not at.hasLost(side, -0.5 * side, -0.1 * side)  # it never carried anything
+    at.peaks = (3.0, 3.0)
     # the base of a soft wall lags behind
     assert not at.hasLost(side, -0.5 * side, 1.9 * side)
     assert at.hasLost(side, -0.5 * side, -0.1 * side)

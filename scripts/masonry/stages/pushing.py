@@ -98,8 +98,11 @@ class Pushing:
     def hasLost(self, direction, shear, top):
         """Whether the wall is farther out than ever before, a millimetre beyond the peak, and both
         the mean base shear and the present force of the drive [kN] are below a fifth of it. A slow
-        wave can take the base alone below any share of a peak."""
+        wave can take the base alone below any share of a peak. A force that has not pointed to this
+        side yet, as of a cycle that begins aside, has no peak to lose."""
         side, out = direction > 0, direction * self.moved
+        if not self.peaks[side]:
+            return False
         if shear is None or out <= max(self.reach[side], self.peaksAt[side] + 1):
             return False
         return max(direction * shear, direction * top) < 0.2 * self.peaks[side]
