@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Sequence
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 from masonry.arguments import FilePath, isA, listOf, number, text, validated, whole
 from masonry.errors import Refused, refuse
@@ -47,7 +47,9 @@ STEP = 2.38
 # share of the variance that is no function of the properties: without it the covariance of long
 # lengths is singular, and their likelihood is round-off, another one on every machine [-]
 NUGGET = 1e-8
-LENGTHS = 0.1, 0.3, 1.0  # over the ranges, from which the search of the likeliest lengths begins
+# lengths for each property, of which the likeliest begin as many searches without derivatives:
+# those by derivatives end in the round-off of the likelihood
+LENGTHS, SEARCHES = 32, 3
 STARTS = 2000  # points of which the most likely one begins the first chain
 MAX_ERROR_RATIO = 0.5  # of the surrogate to the test, beyond which rounds and checks go on [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
@@ -330,22 +332,32 @@ def _kriging(u, column):
     if not column.any():  # the same in all rows
         return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
     rows, values = ot.Sample(u), ot.Sample(column[:, None])
-    smooth, flags = ot.SquaredExponential([1.0] * size, [1.0]), ot.Log.Flags()
+    smooth, trend = ot.SquaredExponential([1.0] * size, [1.0]), ot.LinearBasisFactory(size).build()
     smooth.setNuggetFactor(NUGGET)
+    flags = ot.Log.Flags()
     ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of its search
-    algorithm = ot.KrigingAlgorithm(rows, values, smooth, ot.LinearBasisFactory(size).build())
-    starts = ot.Sample([[length] * size for length in LENGTHS])
-    algorithm.setOptimizationAlgorithm(ot.MultiStart(ot.TNC(), starts))
+    algorithm = ot.KrigingAlgorithm(rows, values, smooth, trend)
+    likelihood, box = algorithm.getReducedLogLikelihoodFunction(), algorithm.getOptimizationBounds()
+    low, high = np.log(box.getLowerBound()), np.log(box.getUpperBound())
+    unlikely = lambda logarithms: -np.ravel(likelihood(np.exp(logarithms)))
+    grid = low + (high - low) * np.array(points("sobol", LENGTHS * size, size, 1))
+    found = [
+        optimize.minimize(
+            lambda one: unlikely([one])[0], start, method="Nelder-Mead", bounds=[*zip(low, high)]
+        )
+        for start in grid[np.argsort(unlikely(grid))[:SEARCHES]]
+    ]
+    smooth.setScale(np.exp(min(found, key=lambda one: one.fun).x))
+    algorithm = ot.KrigingAlgorithm(rows, values, smooth, trend)
+    algorithm.setOptimizeParameters(False)
     algorithm.run()
     ot.Log.Show(flags)
     result = algorithm.getResult()
-    covariance = result.getCovarianceModel()
     factors = np.array(result.getCovarianceCoefficients())[:, 0]
     # O. Dubrule, Cross validation of kriging in a unique neighborhood (1983)
-    missed = factors / np.linalg.inv(np.array(covariance.discretize(rows))).diagonal()
+    missed = factors / np.linalg.inv(np.array(smooth.discretize(rows))).diagonal()
     slopes = np.array(result.getTrendCoefficients()).ravel()
-    power = covariance.getAmplitude()[0] ** 2
-    return slopes, np.array(covariance.getScale()), power * factors, missed
+    return slopes, np.array(smooth.getScale()), factors, missed
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:
