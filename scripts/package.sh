@@ -4,6 +4,7 @@
 # build/package. The binary package depends on exactly the YADE that is installed here, because the plugin fits no other.
 #
 #   bash scripts/package.sh
+#   bash scripts/package.sh --source                            the source package alone
 #   bash scripts/package.sh FOLDER/yade-masonry_VERSION.dsc     the binary package of a source package made elsewhere
 #   apt-get install ./build/package/yade-masonry_*.deb          on each machine, as root
 #   apt-get remove yade-masonry
@@ -14,7 +15,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 out=$PWD/build/package
-source=${1:+$(realpath "$1")}
+source=
+[[ -z ${1:-} || $1 == --source ]] || source=$(realpath "$1")
 command -v dpkg-source >/dev/null || { echo "needs dpkg-dev: apt-get install dpkg-dev" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -40,14 +42,17 @@ CHANGELOG
     sed -i "s/@MAINTAINER@/$maintainer/" "$tree/debian/control" "$tree/debian/changelog"
     (cd "$out" && dpkg-source --build "$tree" >log)
     source=$out/yade-masonry_$version-1.dsc
+    ls "$source"
+    [[ ${1:-} != --source ]] || exit 0
 fi
 
 # A later release gets a later version of the same source.
-dpkg-source --extract "$source" "$work/source" >>"$out/log"
+mkdir -p "$out"
+dpkg-source --extract "$source" "$work/source" >>"$out/log" 2>&1
 cd "$work/source"
 release=$(. /etc/os-release && echo "$VERSION_ID")
 sed -i "1s/)/~deb$release)/" debian/changelog
 dpkg-checkbuilddeps || { echo "as root: apt-get build-dep --no-install-recommends $source" >&2; exit 1; }
 dpkg-buildpackage --build=binary --no-sign --jobs=auto >>"$out/log" 2>&1 || { tail -n 40 "$out/log" >&2; exit 1; }
 mv ../yade-masonry_*.deb "$out"
-ls "$out"/*.dsc "$out"/*.deb
+ls "$out"/*.deb
