@@ -16,6 +16,7 @@ packages=(python3-pytest-xdist clang-format black python3-pyflakes) # for the ga
 # For gates, studies, YADE's 3-D view, pages in 3-D and notebooks.
 whole=(mypy python3-yaml slurm-wlm munge xvfb xauth libjs-three jupyter-nbconvert python3-ipykernel python3-pandas)
 long=(clang libclang-rt-dev python3-sphinx python3-myst-parser furo libjs-mathjax)
+long+=(debhelper dh-python libvtk9-dev libgmp-dev libmpfr-dev lintian) # for the Debian package
 case "${1:-}" in
     quick) tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host tests/limit tests/capacity -m "not slow" "${@:2}") ;;
     "") tests=(tests -m "not long") packages+=("${whole[@]}") ;;

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Tries both commands of README.md in a fresh Debian, and prints peak and times of each release in a line. Fails if one of
-# them does. A release whose own packages cannot be had or installed today is a note: forky moves.
+# Tries in a fresh Debian both commands of README.md, then the Debian package of the last commit: built of what it says that
+# it needs, installed, tested by autopkgtest. Prints peak and times of each release in a line. Fails if one of them does. A release whose own packages cannot be had or installed today is a note: forky moves.
 #
 #   bash scripts/try_release.sh bookworm|trixie|forky...      in a temporary folder, which is removed at the end
 #   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
 #   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of this machine
 #
-# Needs root, debootstrap, 5 GB in FOLDER and ten minutes for a release. What is tried is this working tree.
+# Needs root, debootstrap, dpkg-dev, 6 GB in FOLDER and a quarter of an hour for a release. What is tried is this working tree.
 set -euo pipefail
 NO_PACKAGES=100 # exit status of scripts/setup.sh if apt-get fails
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -40,7 +40,7 @@ trap clean EXIT
 # In the release: a command from the working tree there. Its output goes to a log, whose end is shown if it fails.
 inside() {
     local started=$SECONDS
-    chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
+    chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
         bash -c "cd /root/masonry && $*" >"$folder/$release.log" 2>&1 && outcome=ok || outcome="exit $?"
     seconds=$((SECONDS - started))
     [[ $outcome == ok ]] || tail -n 40 "$folder/$release.log" >&2
@@ -54,6 +54,7 @@ skip() {
     mkdir -p "$folder"
 }
 
+bash scripts/package.sh --source
 lines=("release|yade|command|outcome|time [s]|peak [kN]")
 for release in "$@"; do
     root=$folder/$release
@@ -84,6 +85,16 @@ for release in "$@"; do
     [[ $outcome != "exit $NO_PACKAGES" ]] || { skip "packages for tests cannot be had or installed"; continue; }
     passed=$(tail -n 1 "$folder/$release.log")
     lines+=("$release|$yade|bash scripts/test.sh quick|$outcome: $passed|$seconds|-")
+    # the package is tried alone, without what setup.sh has installed
+    mkdir "$root/root/package"
+    find build/package -name 'yade-masonry_*' -exec cp -t "$root/root/package" {} +
+    inside 'apt-get build-dep --yes --no-install-recommends /root/package/*.dsc &&
+        apt-get install --yes --no-install-recommends autopkgtest && rm -r /usr/local/lib/python3*/dist-packages/masonry*'
+    [[ $outcome != "exit $NO_PACKAGES" ]] || { skip "packages for the Debian package cannot be had or installed"; continue; }
+    inside 'DEB_BUILD_OPTIONS=nocheck bash scripts/package.sh /root/package/*.dsc'
+    lines+=("$release|$yade|bash scripts/package.sh|$outcome|$seconds|-")
+    inside 'autopkgtest --no-built-binaries build/package/*.deb /root/package/*.dsc -- null'
+    lines+=("$release|$yade|autopkgtest|$outcome|$seconds|-")
     mv "$folder/$release.log" "${TMPDIR:-/tmp}/try_release_$release.log"
     clean
     mkdir -p "$folder"

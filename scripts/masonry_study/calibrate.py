@@ -31,7 +31,7 @@ from masonry.packages import needed
 from masonry_view.comparison import readMeasured
 from masonry.numbers.files import readCurve
 from . import pictures
-from .designs import points, seeded
+from .designs import kriging, points, seeded
 from .gathering import Folder, gather, written
 from . import local
 from .plan import Study
@@ -44,10 +44,6 @@ BEGIN = 0.1  # steps of the first chain over the ranges [-]
 # step of a chain over the deviation of a draw and the root of the dimension: Gelman, Roberts and
 # Gilks (1996)
 STEP = 2.38
-# share of the variance that is no function of the properties: without it the covariance of long
-# lengths is singular, and their likelihood is round-off, another one on every machine [-]
-NUGGET = 1e-8
-LENGTHS = 0.1, 0.3, 1.0  # over the ranges, from which the search of the likeliest lengths begins
 STARTS = 2000  # points of which the most likely one begins the first chain
 MAX_ERROR_RATIO = 0.5  # of the surrogate to the test, beyond which rounds and checks go on [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
@@ -302,7 +298,7 @@ class Surrogate:
         self.low, self.high, self.offset = low, high, y.mean(axis=0)
         u = (x - low) / (high - low)
         scale = np.where(np.ptp(y, axis=0) > 0, y.std(axis=0), 1.0)
-        found = [_kriging(u, column) for column in ((y - self.offset) / scale).T]
+        found = [kriging(u, column) for column in ((y - self.offset) / scale).T]
         slopes, lengths, factors, missed = map(np.array, zip(*found))
         self.weights, self.factors = 0.5 / np.square(lengths), scale[:, None] * factors
         squares = np.square(missed.T)
@@ -321,31 +317,6 @@ class Surrogate:
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
         return self.unit((x - self.low) / (self.high - self.low))
-
-
-def _kriging(u, column):
-    """Slopes of the trend, lengths of the covariance, factors of the rows, and their leave-one-out
-    errors."""
-    ot, size = needed("openturns"), u.shape[1]
-    if not column.any():  # the same in all rows
-        return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
-    rows, values = ot.Sample(u), ot.Sample(column[:, None])
-    smooth, flags = ot.SquaredExponential([1.0] * size, [1.0]), ot.Log.Flags()
-    smooth.setNuggetFactor(NUGGET)
-    ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of its search
-    algorithm = ot.KrigingAlgorithm(rows, values, smooth, ot.LinearBasisFactory(size).build())
-    starts = ot.Sample([[length] * size for length in LENGTHS])
-    algorithm.setOptimizationAlgorithm(ot.MultiStart(ot.TNC(), starts))
-    algorithm.run()
-    ot.Log.Show(flags)
-    result = algorithm.getResult()
-    covariance = result.getCovarianceModel()
-    factors = np.array(result.getCovarianceCoefficients())[:, 0]
-    # O. Dubrule, Cross validation of kriging in a unique neighborhood (1983)
-    missed = factors / np.linalg.inv(np.array(covariance.discretize(rows))).diagonal()
-    slopes = np.array(result.getTrendCoefficients()).ravel()
-    power = covariance.getAmplitude()[0] ** 2
-    return slopes, np.array(covariance.getScale()), power * factors, missed
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:

@@ -3,19 +3,26 @@
 
 Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence,
 moved by a random vector. Correlated numbers follow a normal copula with the given rank correlation
-(Spearman's).
+(Spearman's). Between such points kriging stands for what the rows give.
 """
 
 import contextlib
 import itertools
 
 import numpy as np
+from scipy import optimize
 
 from masonry.errors import Refused
 from masonry.packages import needed
 from .variables import Distribution
 
 EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
+# share of the variance that is no function of the properties: without it the covariance of long
+# lengths is singular, and their likelihood is round-off, another one on every machine [-]
+NUGGET = 1e-8
+# lengths for each property, of which the likeliest begin as many searches without derivatives:
+# those by derivatives end in the round-off of the likelihood
+LENGTHS, SEARCHES = 32, 3
 DESIGNS = ("random", "latin", "sobol", "grid", "ida")
 
 
@@ -85,3 +92,32 @@ def _tied(point, factor, normal):
     free = [normal.computeQuantile(point[i])[0] for i in size]
     tied = (sum(factor[i, j] * free[j] for j in size) for i in size)
     return [*map(normal.computeCDF, tied), *point[len(size) :]]
+
+
+def kriging(u, column):
+    """Slopes of the trend, lengths of the covariance, factors of the rows, and their leave-one-out
+    errors."""
+    ot, size = needed("openturns"), u.shape[1]
+    if not column.any():  # the same in all rows
+        return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
+    rows, smooth = ot.Sample(u), ot.SquaredExponential([1.0] * size, [1.0])
+    smooth.setNuggetFactor(NUGGET)
+    trend, flags = ot.LinearBasisFactory(size).build(), ot.Log.Flags()
+    ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of lengths
+    algorithm = ot.KrigingAlgorithm(rows, ot.Sample(column[:, None]), smooth, trend)
+    likelihood, box = algorithm.getReducedLogLikelihoodFunction(), algorithm.getOptimizationBounds()
+    ot.Log.Show(flags)
+    low, high = np.log(box.getLowerBound()), np.log(box.getUpperBound())
+    unlikely = lambda logarithms: -np.ravel(likelihood(np.exp(logarithms)))
+    grid = low + (high - low) * np.array(points("sobol", LENGTHS * size, size, 1))
+    starts = grid[np.argsort(unlikely(grid))[:SEARCHES]]
+    search = {"method": "Nelder-Mead", "bounds": [*zip(low, high)]}
+    found = [optimize.minimize(lambda one: unlikely([one])[0], x, **search) for x in starts]
+    lengths = np.exp(min(found, key=lambda one: one.fun).x)
+    smooth.setScale(lengths)
+    inverse = np.linalg.inv(np.array(smooth.discretize(rows)))
+    shapes = np.column_stack([np.ones(len(u)), u])
+    slopes = np.linalg.solve(shapes.T @ inverse @ shapes, shapes.T @ inverse @ column)
+    factors = inverse @ (column - shapes @ slopes)
+    # O. Dubrule, Cross validation of kriging in a unique neighborhood (1983)
+    return slopes, lengths, factors, factors / inverse.diagonal()

@@ -171,4 +171,3 @@ def test_the_package_says_that_it_has_hints():
     for package in PACKAGES:
         assert os.path.isfile(os.path.join(SCRIPTS, package, "py.typed"))
     assert 'PATTERN "py.typed"' in tree.read("CMakeLists.txt")
-    assert "-name py.typed" in tree.read("scripts/package.sh")

@@ -19,12 +19,13 @@ def test_change_log_and_citation_are_of_this_version_of_three_numbers():
     for path, line in (
         ("CHANGELOG.md", r"^## (\S+)"),
         ("CITATION.cff", r"^version: (\S+)$"),
+        ("scripts/debian/changelog", r"^yade-masonry \((\S+)\+ds-\d+\)"),
     ):
         assert re.search(line, tree.read(path), re.M)[1] == version(), path
 
 
 def test_the_debian_package_takes_the_version_from_the_same_line():
-    line = re.search(r"^number=\$\((.*)\)$", tree.read("scripts/package.sh"), re.M)
+    line = re.search(r"^ *number=\$\((.*)\)$", tree.read("scripts/package.sh"), re.M)
     command = ["bash", "-c", line.group(1)]
     said = subprocess.check_output(command, cwd=tree.ROOT, text=True)
     assert said.strip() == version()
