@@ -38,7 +38,6 @@ REASONS = {
         "installs packages; the scene itself is run by tests/scenes/test_walls.py"
     ),
     r".*(view\.py|view_html)": "needs ParaView: tests/view/test_view.py",
-    r".*apt-get": "installs packages",
     r".*--slurm|squeue|seq ": "needs a cluster: tests/study/test_run.py has one of Slurm",
     r".*tests/references/references\.py": "tests/host/test_references.py",
     r".*validation/\w+/?\w*\.py": (

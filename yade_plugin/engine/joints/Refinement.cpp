@@ -481,12 +481,13 @@ void Refinement::readParts(const SceneContents& store) {
 }
 
 // Whether both blocks of a dry joint are bonded to a third one, or to two that are bonded to each other, as the halves
-// of a brick: head joints without bond turn with bonded beds. Bonds that have cracked do not count.
+// of a brick: head joints without bond turn with bonded beds, also with cracked ones. Those that became contacts do not
+// count.
 bool Refinement::isBridged(const JointReference& r) const {
     const auto bondedTo = [&](int body) {
         std::set<int> all;
         for (const auto& [other, bond] : bonds_[body])
-            if (!bond->converted() && !hasCracked(*bond->group, bond->index)) all.insert(other);
+            if (!bond->converted()) all.insert(other);
         return all;
     };
     const auto other = bondedTo(r.sides[1].body);
