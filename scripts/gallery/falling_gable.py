@@ -3,8 +3,8 @@
 wall below stands.
 
 The triangle is 0.22 m thick, in a weak lime mortar, so what falls is pieces that hold together
-until they land. About 45 stones fall: the impacts decide the last of them. Without damping. It takes about a
-minute.
+until they land. About 45 stones fall; impacts decide how many exactly. Without damping. It takes
+about a minute.
 """
 
 import math

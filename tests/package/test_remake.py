@@ -105,7 +105,8 @@ def test_what_is_stale_is_made_recorded_and_in_the_tables(tree, capfd):
     path, result, commit = tree
     folder = path / "results/one"
     program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
-    program += "assert os.path.exists('fine'); print('so:\\n| a |\\n|---|\\nwell\\n| 1 |\\n'); raise SystemExit(1)"
+    program += "assert os.path.exists('fine'); "
+    program += "print('so:\\n| a |\\n|---|\\nwell\\n| 1 |\\n'); raise SystemExit(1)"
     (path / "validation/one/run.py").write_text(program)
     (folder / "old").write_text("of an older state")
     assert remake.main(["--built", commit]) == 1

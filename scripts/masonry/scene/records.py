@@ -131,8 +131,8 @@ class Section:
             yield self._column(0, "xyz".index(axis), f"V_{axis}", "kN", meaning)
         for axis, side in moments:
             meaning = (
-                f"moment on {at}: of {on}, about {axis} through {about} m by the right-hand rule, so"
-                f" that it presses the side of {side} where it is positive"
+                f"moment on {at}: of {on}, about {axis} through {about} m by the right-hand rule,"
+                f" so that it presses the side of {side} where it is positive"
             )
             yield self._column(1, "xyz".index(axis), f"M_{axis}", "kNm", meaning)
 

@@ -13,9 +13,9 @@ load grew, nor which loads were tried.
 
 A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the
 largest load that was held is checked with a small push to the side
-(:func:`masonry.model.period.buckles`), and so are those of a long trial and that from which one
-began. If the push grows, the load is not held. The search then begins again at the states at rest
-below it, and every later trial is checked so.
+(:func:`masonry.model.period.buckles`). A load that a long trial held is checked at once, and so is
+the state at rest from which a long trial began. If the push grows, the load is not held. The search
+then begins again at the states at rest below it, and every later trial is checked so.
 """
 
 import base64
