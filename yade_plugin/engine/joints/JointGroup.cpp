@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace masonry {
 
@@ -44,6 +45,7 @@ void LinearField::setNumbers(int joint, const std::array<double, 6>& numbers) {
 }
 
 void JointShapes::take(int joint, JointShapes& from, int other) {
+    settled = settled || from.settled;
     joints[joint] = from.joints[other];
     refined[joint] = from.refined[other];
     converted[joint] = from.converted[other];
@@ -61,13 +63,14 @@ void JointShapes::take(int joint, JointShapes& from, int other) {
     }
 }
 
-void JointShapes::shareShapes(bool known) {
+void JointShapes::shareShapes() {
     constexpr int most = JointFrames::most;
     const int count = int(joints.size());
+    const bool exactly = std::exchange(settled, true);
     if (alike || count < most) return;
     const double length = joints[0].span().norm();
-    const auto same = [known](double a, double b, double scale) {
-        return known ? a == b : sameButRoundOff(a, b, scale);
+    const auto same = [exactly](double a, double b, double scale) {
+        return exactly ? a == b : sameButRoundOff(a, b, scale);
     };
     for (int p = 0; p < points; ++p)
         for (int j = 1; j < count; ++j) {
@@ -100,6 +103,7 @@ void RefinedJoint::visitState(StateNumbers& n) {
 }
 
 void JointShapes::visitShape(int j, StateNumbers& n) {
+    settled = settled || n.back;
     n(joints[j], refined[j]);
     for (int p = 0; p < points; ++p) {
         JointPoint point{offsetAt(p, j), areaAt(p, j)};

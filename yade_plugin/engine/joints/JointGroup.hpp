@@ -139,6 +139,9 @@ struct JointShapes : JointGroup {
     int points;         // number of subcontacts of a joint
     int stride;         // number of joints, rounded up to whole lanes; one joint alone is not rounded up
     bool alike = false; // see shareShapes()
+    // Whether a scene or a file has had areas and offsets of these joints, which then stay to the bit. A run that is
+    // resumed, and has other joints beside them, goes on with the same numbers.
+    bool settled = false;
     std::vector<JointReference> joints;
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
@@ -264,11 +267,10 @@ struct JointShapes : JointGroup {
     }
     // Copies joint number `other` of another group with the same number of points into place `joint` of this one.
     void take(int joint, JointShapes& from, int other);
-    // If areas and offsets of all joints are the same but for round-off, keeps those of the first joint alone and sets
-    // `alike`. Each value then stands `JointFrames::most` times, so that a batch of joints reads them as it reads
-    // others, and they stay in the innermost cache. `known`: a joint that was in the scene before keeps the numbers
-    // that it has, so they must be the same to the bit.
-    void shareShapes(bool known);
+    // If areas and offsets of all joints are the same, to the bit if they are `settled` and but for round-off otherwise,
+    // keeps those of the first joint alone and sets `alike`. Each value then stands `JointFrames::most` times, so that a
+    // batch of joints reads them as it reads others, and they stay in the innermost cache. Settles them.
+    void shareShapes();
 
 private:
     void writePoints();

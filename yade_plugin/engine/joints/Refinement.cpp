@@ -619,7 +619,7 @@ bool Refinement::setPoints(SceneContents& store, const std::vector<PointCounts>&
         const SingleJointColumns fresh(*joint, counts.along ? refinedPoints(joint->geom->reference(), counts) : *first);
         fresh.shapes->refined[0] = {counts, counts.along ? first : nullptr};
         fresh.shapes->scene = joint->geom->group->scene;
-        fresh.shapes->inScene = true; // so that its points stay to the bit, also if all of a group go back to theirs
+        fresh.shapes->settled = true;
         fresh.attachTo(*joint);
     }
     return true;

@@ -351,17 +351,15 @@ void SceneStore::groupJoints(std::vector<JointView> found, bool sameProperties) 
             group->scene = life_;
             group->inScene = true;
         }
-        bool wereThere = false;
         for (int j = 0; j < count; ++j) {
             const auto& joint = found[group.members[j]];
-            wereThere = wereThere || (joint.geom->group->inScene && !joint.geom->refined().coarse);
             kind.shapes->take(j, *joint.geom->group, joint.geom->index);
             kind.states->take(j, *joint.phys->group, joint.phys->index);
             joint.geom->group = kind.shapes;
             joint.phys->group = kind.states;
             joint.geom->index = joint.phys->index = j;
         }
-        kind.shapes->shareShapes(wereThere);
+        kind.shapes->shareShapes();
         made.push_back(kind);
     }
     for (auto& kind : kinds)
