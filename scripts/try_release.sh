@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Tries in a fresh Debian both commands of README.md, then the Debian package of the last commit: built of what it says that
-# it needs, installed, tested by autopkgtest. Prints peak and times of each release in a line. Fails if one of them does. A release whose own packages cannot be had or installed today is a note: forky moves.
+# Tries in a fresh Debian both commands of README.md, then the Debian package of the last commit: built of what it says
+# that it needs, installed, tested by autopkgtest. Prints outcome, time and peak in a line for each. Fails if one of them
+# does. A release whose own packages cannot be had or installed today is a note: forky moves.
 #
 #   bash scripts/try_release.sh bookworm|trixie|forky...      in a temporary folder, which is removed at the end
 #   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
 #   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of this machine
 #
-# Needs root, debootstrap, dpkg-dev, 6 GB in FOLDER and a quarter of an hour for a release. What is tried is this working tree.
+# Needs root, debootstrap, dpkg-dev, 6 GB in FOLDER and a quarter of an hour for a release. What is tried is this working
+# tree.
 set -euo pipefail
 NO_PACKAGES=100 # exit status of scripts/setup.sh if apt-get fails
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-(($#)) || { sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+(($#)) || { sed -n '3,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
 for release in "$@"; do
     [[ $release =~ ^(bookworm|trixie|forky)$ ]] || { echo "release '$release' must be bookworm, trixie or forky" >&2; exit 2; }
 done
@@ -91,10 +93,13 @@ for release in "$@"; do
     inside 'apt-get build-dep --yes --no-install-recommends /root/package/*.dsc &&
         apt-get install --yes --no-install-recommends autopkgtest && rm -r /usr/local/lib/python3*/dist-packages/masonry*'
     [[ $outcome != "exit $NO_PACKAGES" ]] || { skip "packages for the Debian package cannot be had or installed"; continue; }
+    lines+=("$release|$yade|apt-get build-dep|$outcome|$seconds|-")
     inside 'DEB_BUILD_OPTIONS=nocheck bash scripts/package.sh /root/package/*.dsc'
     lines+=("$release|$yade|bash scripts/package.sh|$outcome|$seconds|-")
-    inside 'autopkgtest --no-built-binaries build/package/*.deb /root/package/*.dsc -- null'
-    lines+=("$release|$yade|autopkgtest|$outcome|$seconds|-")
+    if [[ $outcome == ok ]]; then
+        inside 'autopkgtest --no-built-binaries build/package/*.deb /root/package/*.dsc -- null'
+        lines+=("$release|$yade|autopkgtest|$outcome|$seconds|-")
+    fi
     mv "$folder/$release.log" "${TMPDIR:-/tmp}/try_release_$release.log"
     clean
     mkdir -p "$folder"
