@@ -502,15 +502,30 @@ def test_a_cut_keeps_the_volume_and_the_brick():
 normals = some.tuples(*[some.integers(-9, 9)] * 3).filter(any)
 
 
+def passesNearCorner(blocks, point, normal):
+    """Whether a plane passes a corner at less than the distance at which it counts as in it."""
+    apart = [
+        abs(np.dot(np.subtract(c, point), normal))
+        / np.linalg.norm(normal)
+        / math.dist(b.low, b.high)
+        for b in blocks
+        for c in b.corners
+    ]
+    return any(1e-9 < d < bricks.geometry.COINCIDENT for d in apart)
+
+
 @few
 @given(normals, some.floats(0.1, 0.9), some.booleans())
 def test_cuts_by_any_planes_leave_convex_pieces_that_fill_the_wall(normal, share, own):
     wall = Wall(2 * L, 3 * H)
     point = tuple(share * x for x in wall.high)
-    cut = wall.cut(point, normal, own).cut((0.2, 0.05, 0.1), (0.3, 1, 0.2), own)
+    second = (0.2, 0.05, 0.1), (0.3, 1, 0.2)
+    # what such planes leave is named: faces that cannot be found, or an overlap of smaller pieces
+    assume(not passesNearCorner(wall, point, normal))
+    once = wall.cut(point, normal, own)
+    assume(not passesNearCorner(once, *second))
+    cut = once.cut(*second, own)
     problems = cut.problems()
-    # planes that pass a corner as near as round-off leave a piece that is named
-    assume(not any("faces cannot be found" in p for p in problems))
     bad = [p for p in problems if "sliver" not in p and "odd size" not in p]
     assert bad == []
     # a corner as near to a plane as COINCIDENT of its brick's diagonal counts as lying in it

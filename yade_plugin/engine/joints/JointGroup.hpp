@@ -267,9 +267,10 @@ struct JointShapes : JointGroup {
     }
     // Copies joint number `other` of another group with the same number of points into place `joint` of this one.
     void take(int joint, JointShapes& from, int other);
-    // If areas and offsets of all joints are the same, to the bit if they are `settled` and but for round-off otherwise,
-    // keeps those of the first joint alone and sets `alike`. Each value then stands `JointFrames::most` times, so that a
-    // batch of joints reads them as it reads others, and they stay in the innermost cache. Settles them.
+    // If areas and offsets of all joints are the same, to the bit if they are `settled` and but for round-off
+    // otherwise, keeps those of the first joint alone and sets `alike`. Each value then stands `JointFrames::most`
+    // times, so that a batch of joints reads them as it reads others, and they stay in the innermost cache. Settles
+    // them.
     void shareShapes();
 
 private:
