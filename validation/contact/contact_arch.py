@@ -202,7 +202,7 @@ def arch_spread(quick):
     arch = Arch(0.1 * STIFF if quick else STIFF)
     hurry = dict(rate=0.05, slowing=10) if quick else {}
     rows = []
-    for spread in (0.02,) if quick else (0.02, 0.035):
+    for spread in (0.02,) if quick else (0.02, 0.03):
         arch.moveTo(spread, **hurry)
         if not arch.stands():
             raise RuntimeError(f"the arch falls at {1e3 * spread:g} mm already")
@@ -221,7 +221,7 @@ def arch_spread(quick):
         if arch.stands():
             raise RuntimeError("the arch stands at 41 mm")
     else:
-        for spread in np.arange(0.03525, 0.041, 0.25e-3):
+        for spread in np.arange(0.03025, 0.041, 0.25e-3):
             arch.moveTo(spread)
             if not arch.stands():
                 break

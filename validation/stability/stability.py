@@ -53,7 +53,8 @@ def run(point, blocks):
         except Collapsed as collapse:
             found.update(verdict="green", why=f"collapsed: {collapse}")
         except (Refused, ValueError) as refused:
-            found.update(verdict="warned", why="refused: " + str(refused))
+            late = m and O.iter  # a refusal comes before the first step
+            found.update(verdict="failed" if late else "warned", why="refused: " + str(refused))
         except RuntimeError as stopped:
             # of an engine; all but a time step over the limit is our failure
             said = "the time step is" in str(stopped) and " sets" in str(stopped)
@@ -64,7 +65,7 @@ def run(point, blocks):
         except AssertionError as broken:
             found.update(verdict="failed", why=str(broken))
     if m:
-        energy = m.model.energy
+        m.finished, energy = True, m.model.energy
         found.update(m.worst, steps=O.iter)
         found.update(balance=energy.largestError, made=energy.largestMade)
         if m.results.rows:
