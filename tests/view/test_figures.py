@@ -425,6 +425,19 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
     ]
 
 
+def test_a_wall_of_two_storeys_has_one_elevation_and_a_mass_on_a_floor_none():
+    brick = lambda n, y, z: ((n, y, z), (n + 1, y + 0.3, z + 1))
+    bricks = [brick(n, y, z) for y in (0, 3) for z in (0, 2) for n in range(12)]
+    parts = {
+        f"{side} {storey}": range(24 * i + 12 * k, 24 * i + 12 * k + 12)
+        for i, side in enumerate(("front", "back"))
+        for k, storey in enumerate((1, 2))
+    }
+    mass = made(*bricks, ((0, 1, 3), (12, 1.3, 3.3)))
+    found = elevation.elevationsOf(Structure(mass, None, {**parts, "mass": [48]}))
+    assert [one.name for one in found] == ["front", "back"]
+
+
 def test_a_picture_names_its_moment_as_it_is(tmp_path):
     """Three frames of a run that fell: the collapse was noticed at the first, the first block had
     fallen at the second."""
