@@ -126,6 +126,16 @@ def test_a_low_arch_is_seen_from_its_side_and_a_dome_from_above():
     assert view.towards == approx([0, -1, 0])
 
 
+def test_a_drum_in_a_file_with_seven_digits_is_seen_along_an_axis():
+    # four rectangles around an octagon are as small
+    at = np.arange(np.pi / 8, 6.3, np.pi / 4)
+    foot = 0.3 * np.stack([np.cos(at), np.sin(at), 0 * at], axis=1)
+    drum = np.concatenate([foot, foot + (0, 0, 1)]).astype(np.float32).astype(float)
+    for noise in (1e-8, -1e-8):
+        view = viewOf(drum * (1, 1 + noise, 1), np.zeros((0, 3)), np.zeros(0))
+        assert view.labels == ["x [m]", "z [m]"]
+
+
 def test_the_direction_of_sight_can_be_reported():
     view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), direction=(0, -2, 0))
     assert view.towards == approx([0, 1, 0])
