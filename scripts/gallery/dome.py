@@ -2,7 +2,8 @@
 """A dome of voussoirs with an oculus, under its own weight and then under a growing horizontal
 acceleration.
 
-It opens like a flower. It takes about 5 s.
+Between 0.448 and 0.450 g one side opens along its meridians and turns outwards. It takes about
+8 s.
 """
 
 from masonry import Scene, bricks, materials

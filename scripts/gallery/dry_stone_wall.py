@@ -2,7 +2,7 @@
 """A dry-stone wall of 10 courses of 5 stones: its ground is tilted until it falls.
 
 It falls along a stepped crack. It holds a horizontal acceleration of 0.508 of the vertical one, and
-0.511 not. Limit analysis gives 0.538 as an upper bound, and 0.514 for joints that slip without
+0.510 not. Limit analysis gives 0.538 as an upper bound, and 0.514 for joints that slip without
 opening. It takes about 8 s.
 """
 

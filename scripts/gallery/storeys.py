@@ -3,7 +3,8 @@
 acceleration that it carries along ± x and ± y, and along the weakest of these also with floors
 whose mass is 5 % off their middle.
 
-It ends with a table of runs beside bounds of limit analysis. It takes about two minutes.
+It ends with a table of runs beside bounds of limit analysis: from 0.414 g along y, of at most
+0.452 g, to 0.505 g against x, of at most 0.555 g. It takes about five minutes.
 """
 
 from masonry import Scene, bricks, materials

@@ -6,8 +6,8 @@ water, as functions of the place for :meth:`masonry.Scene.pressure`::
     at = earth.pressure(soil, top=2.5, surcharge=5e3, wall=20, kh=0.1, foot=0)
     scene.pressure(at, towards=(1, 0, 0), friction=20)
 
-Strengths and weights are design values: no partial factor is in here. Angles are in degrees. This
-module needs no YADE.
+Strengths and weights are design values: no partial factor is in here. Clauses are cited from
+memory. Angles are in degrees. This module needs no YADE.
 """
 
 import math

@@ -3,6 +3,7 @@
 
 import copy
 import functools
+import itertools
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -24,6 +25,9 @@ from .views import spaceViewOf, viewOf
 #: Share of its own depth, or of the façade's, by which a block of a part in an elevation reaches
 #: into the façade; what belongs to no part, as a platen, need only touch it.
 INSIDE = 0.25
+
+#: A part of one block, as a mass on a floor, has no elevation where another has more than these.
+SINGLE = 10
 
 #: Arrays of frames of blocks and of joints that are drawn.
 NEEDED = (
@@ -246,11 +250,18 @@ def elevationsOf(structure):
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {
         "": list(structure.corners)
     }
+    least = 2 if max(map(len, parts.values())) > SINGLE else 1
     found, seen = {}, set()
+    isIn = lambda part, bodies: len(bodies.intersection(part)) > 0.5 * len(part)
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
-        if len(seen.intersection(members)) <= 0.5 * len(members):
-            found[name] = _facade(structure, name, members)
-            seen.update(found[name].bodies)
+        if len(members) >= least and not isIn(members, seen):
+            found[name] = one = _facade(structure, name, members)
+            seen.update(one.bodies)
+            # "front" of "front 1", "front 2" and "front 2 pier 1"
+            words = [n.split() for n, part in parts.items() if isIn(part, {*one.bodies})]
+            alike = zip(*(w for w in words if w[:1] == name.split()[:1]))
+            same = itertools.takewhile(lambda nth: len({*nth}) == 1, alike)
+            one.name = " ".join(nth[0] for nth in same)
     return [found[name] for name in parts if name in found]
 
 

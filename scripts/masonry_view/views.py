@@ -42,11 +42,11 @@ def viewOf(points, normals, areas, direction=None):
     edges = np.roll(corners, -1, axis=0) - corners
     edges /= np.linalg.norm(edges, axis=1)[:, None]
     best = None
-    # of rectangles that are as small, one along an axis
+    # of rectangles that are as small, as far as files with seven digits say, one along an axis
     for along in sorted(edges, key=lambda edge: round(np.abs(edge).min(), 6)):
         across = np.array([-along[1], along[0]])
         sides = np.ptp(flat @ along), np.ptp(flat @ across)
-        if best is None or sides[0] * sides[1] < best[0] * best[1] * (1 - 1e-9):
+        if best is None or sides[0] * sides[1] < best[0] * best[1] * (1 - 1e-5):
             best = (*sides, along, across)
     first, second, along, across = best
     towardsX = abs(across[0]) > abs(along[0])

@@ -126,6 +126,16 @@ def test_a_low_arch_is_seen_from_its_side_and_a_dome_from_above():
     assert view.towards == approx([0, -1, 0])
 
 
+def test_a_drum_in_a_file_with_seven_digits_is_seen_along_an_axis():
+    # four rectangles around an octagon are as small
+    at = np.arange(np.pi / 8, 6.3, np.pi / 4)
+    foot = 0.3 * np.stack([np.cos(at), np.sin(at), 0 * at], axis=1)
+    drum = np.concatenate([foot, foot + (0, 0, 1)]).astype(np.float32).astype(float)
+    for noise in (1e-8, -1e-8):
+        view = viewOf(drum * (1, 1 + noise, 1), np.zeros((0, 3)), np.zeros(0))
+        assert view.labels == ["x [m]", "z [m]"]
+
+
 def test_the_direction_of_sight_can_be_reported():
     view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), direction=(0, -2, 0))
     assert view.towards == approx([0, 1, 0])
@@ -423,6 +433,19 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
         ("front", {*range(8), 16, 17}),
         ("back", {*range(8, 16), 16}),
     ]
+
+
+def test_a_wall_of_two_storeys_has_one_elevation_and_a_mass_on_a_floor_none():
+    brick = lambda n, y, z: ((n, y, z), (n + 1, y + 0.3, z + 1))
+    bricks = [brick(n, y, z) for y in (0, 3) for z in (0, 2) for n in range(12)]
+    parts = {
+        f"{side} {storey}": range(24 * i + 12 * k, 24 * i + 12 * k + 12)
+        for i, side in enumerate(("front", "back"))
+        for k, storey in enumerate((1, 2))
+    }
+    mass = made(*bricks, ((0, 1, 3), (12, 1.3, 3.3)))
+    found = elevation.elevationsOf(Structure(mass, None, {**parts, "mass": [48]}))
+    assert [one.name for one in found] == ["front", "back"]
 
 
 def test_a_picture_names_its_moment_as_it_is(tmp_path):

@@ -5,7 +5,7 @@ import numpy as np
 from yade import O
 
 #: Share of the way to overturning from which on an end is near the edge of a fall [-]. The scene
-#: pulsed_wall of the gallery ends at 0.69, and falls with a time step 1.17 times as long.
+#: pulsed_wall of the gallery ends at 0.73.
 NEAR = 2 / 3
 CLOSE = 1e-6  # difference of levels that are the same, over the height [-]
 

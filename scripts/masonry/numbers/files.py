@@ -100,7 +100,7 @@ def program(act: Callable[..., int | None]) -> Callable[..., int]:
 @program
 def onFolder(act: Callable[[str], object], words: Sequence[str]) -> None:
     """Main program of what reads a run: calls a function with the folder, the only word."""
-    if len(words) != 1:
+    if len(words) != 1 or words[0].startswith("-"):
         raise Refused("name one folder of results, for example results/wall_comp4")
     try:
         act(words[0])

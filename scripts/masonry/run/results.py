@@ -82,7 +82,7 @@ none; what does not apply is left out or None:
 - ``history``: of a push that follows one: ``text`` of the option; ``points``, ``turning_points``:
   how many; ``path_mm``: length of the way; ``noise_mm``: up to which an excursion is no half cycle;
   ``amplitudes_mm``: pairs of an amplitude and its number of cycles, or ``file`` and ``sha256``;
-  ``cycles``: :func:`masonry.numbers.curves.cycleNumbers`
+  ``cycles``: :func:`masonry.numbers.curves.cycleNumbers`; both of the last such stage alone
 
 Numbers, one a line with its source and unit, are those of :mod:`masonry.numbers.quantities`.
 """
