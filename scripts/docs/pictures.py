@@ -152,7 +152,7 @@ def cropped(path):
 
 
 def gallery():
-    """All structures of the gallery, of each the largest of its drawings."""
+    """All structures of the gallery, of each the last of its large drawings."""
     from scipy import ndimage
 
     paths = sorted(glob.glob(os.path.join(SCRIPTS, "gallery", "*.png")))
@@ -166,7 +166,8 @@ def gallery():
         sizes = ndimage.sum(isDrawn, labels, range(1, count + 1))
         large = [n for n in range(count) if sizes[n] > 0.5 * sizes.max()]
         places = ndimage.find_objects(labels)
-        rows, along = max((places[n] for n in large), key=lambda place: place[0].stop)
+        last = lambda place: place[0].stop + 0.1 * place[1].start  # below, or right of its like
+        rows, along = max((places[n] for n in large), key=last)
         axes.imshow(image[rows, along])
         place = axes.get_position()
         name = os.path.basename(path)[:-4]
