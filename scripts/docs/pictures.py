@@ -166,8 +166,7 @@ def gallery():
         sizes = ndimage.sum(isDrawn, labels, range(1, count + 1))
         large = [n for n in range(count) if sizes[n] > 0.5 * sizes.max()]
         places = ndimage.find_objects(labels)
-        last = lambda place: place[0].stop + 0.1 * place[1].start  # below, or right of its like
-        rows, along = max((places[n] for n in large), key=last)
+        rows, along = max((places[n] for n in large), key=lambda p: p[0].stop + 0.1 * p[1].start)
         axes.imshow(image[rows, along])
         place = axes.get_position()
         name = os.path.basename(path)[:-4]
