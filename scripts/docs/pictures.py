@@ -152,7 +152,7 @@ def cropped(path):
 
 
 def gallery():
-    """All structures of the gallery, of each the largest of its drawings."""
+    """All structures of the gallery, of each the last of its large drawings."""
     from scipy import ndimage
 
     paths = sorted(glob.glob(os.path.join(SCRIPTS, "gallery", "*.png")))
@@ -166,7 +166,7 @@ def gallery():
         sizes = ndimage.sum(isDrawn, labels, range(1, count + 1))
         large = [n for n in range(count) if sizes[n] > 0.5 * sizes.max()]
         places = ndimage.find_objects(labels)
-        rows, along = max((places[n] for n in large), key=lambda place: place[0].stop)
+        rows, along = max((places[n] for n in large), key=lambda p: p[0].stop + 0.1 * p[1].start)
         axes.imshow(image[rows, along])
         place = axes.get_position()
         name = os.path.basename(path)[:-4]

@@ -2,7 +2,7 @@
 """A façade of two storeys with doors, windows and spandrels, 16.28 × 6.885 m, 5,010 bricks: pushed
 at its top.
 
-It sways in its piers. It takes about a minute.
+It carries 150.5 kN, until the piers of its upper storey slide. It takes about a minute.
 """
 
 from masonry import Scene, bricks, materials
