@@ -146,9 +146,10 @@ def act(scene, cell, target, base):
 
 
 def _momenta(model):
-    """Mass, place, velocity, and angular momentum about its centre, of every body and node that
-    moves."""
+    """Mass, place, velocity, angular momentum about its centre, and factor on the inertia (``added
+    inertia`` has no weight), of every body and node that moves."""
     zones, found = model.zones, []
+    factors = dict(enumerate(model.scheme.integrator.inertiaFactors))
     divided = set(zones.bodies) if zones else set()
     for body in O.bodies:
         state = body.state
@@ -156,13 +157,13 @@ def _momenta(model):
             first, end = zones.nodesOf(body.id)
             for node in range(first, end):
                 place = zones.referencePoint(body.id, node) + zones.displacements[node]
-                found.append((zones.masses[node], place, zones.velocities[node], np.zeros(3)))
+                found.append((zones.masses[node], place, zones.velocities[node], np.zeros(3), 1))
             continue
         turn = np.array([list(row) for row in _rows(state.ori.toRotationMatrix())])
         own = turn.T @ np.array(state.angVel)
         spin = turn @ (np.array(state.inertia) * own)
-        found.append((state.mass, state.pos, state.vel, spin))
-    return [(m, np.array(r), np.array(v), np.array(s)) for m, r, v, s in found]
+        found.append((state.mass, state.pos, state.vel, spin, factors.get(body.id, 1)))
+    return [(m, np.array(r), np.array(v), np.array(s), f) for m, r, v, s, f in found]
 
 
 def _rows(matrix):
@@ -184,12 +185,12 @@ def stepped(scene):
     after = _momenta(model)
     force, moment, change, spin = (np.zeros(3) for _ in range(4))
     size = arm = 0.0
-    for (m, r, v, s), (_, _, v2, s2) in zip(before, after):
-        weight = m * gravity
+    for (m, r, v, s, factor), (_, _, v2, s2, _) in zip(before, after):
+        weight, inertial = m * gravity, factor * m * (v2 - v) / O.dt
         force += weight
         moment += np.cross(r, weight)
-        change += m * (v2 - v) / O.dt
-        spin += np.cross(r, m * (v2 - v) / O.dt) + (s2 - s) / O.dt
+        change += inertial
+        spin += np.cross(r, inertial) + factor * (s2 - s) / O.dt
         size, arm = max(size, np.abs(weight).max()), max(arm, np.abs(r).max())
     for load, point in zip(loads, points):
         one = np.array(load.force) + load.reaction * np.array(load.direction.normalized())
@@ -255,7 +256,9 @@ def checkColumns(scene):
     bodies = [*_owners(model)]
     free = [n for n, body in enumerate(bodies) if body not in held]
     need = sum(
-        counts(bodies[n]) * before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt)
+        counts(bodies[n])
+        * before[n][0]
+        * (gravity - before[n][4] * (after[n][2] - before[n][2]) / O.dt)
         for n in free
     )
     size = np.abs(need).max()
