@@ -95,6 +95,18 @@ def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, withi
     assert 0.6 < fast["base_weight"] < 0.8
 
 
+@mark.parametrize("plane", [True, False])
+def test_a_brick_that_the_drive_alone_moves_has_no_period(tmp_path, capsys, plane):
+    stones = materials.dry(friction=0.6, density=2000)
+    scene = standing(tmp_path, bricks.block((0, 0, 0), (0.3, 0.1, 0.2)), stones, plane=plane)
+    brick = scene.handle((0.15, 0.05, 0.1))
+    scene.settle()
+    scene.push(brick, 1, rate=20)
+    assert "no first period" in capsys.readouterr().out
+    weight = 2000 * 9.81 * 0.3 * 0.1 * 0.2
+    assert scene.curve()["base_shear_kN"][-1] == approx(0.6e-3 * weight, rel=0.05)  # it swings
+
+
 def test_a_push_without_a_period_says_so(tmp_path, capsys):
     words = ["--out", str(tmp_path), "--rate", "100", "--until", "0.02"]
     carryOut(SMALL, parsed(*LEAN, *words))

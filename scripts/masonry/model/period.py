@@ -129,10 +129,10 @@ def _elasticPeriod(structure, direction, share):
         O.step()
         solution = ElasticSolution()
         square = solution.findMode(direction)
-        if not square:
-            return None
         acceleration = share * GRAVITY / structure.args.density_scaling
-        moved = 2 * acceleration * solution.participation() / square
+        moved = square and 2 * acceleration * solution.participation() / square
+        if not moved:  # nothing moves along the direction, or without resistance
+            return None
         rest, forces, lost = solution.force(), [], structure.energies()[0]
         for amount in (moved, -2 * moved):
             solution.displace(amount)
