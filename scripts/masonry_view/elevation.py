@@ -26,7 +26,8 @@ from .views import spaceViewOf, viewOf
 #: into the façade; what belongs to no part, as a platen, need only touch it.
 INSIDE = 0.25
 
-#: A part of one block, as a mass on a floor, has no elevation where another has more than these.
+#: Blocks of a part. Beside a part with more of them a single block, as a mass on a floor, has no
+#: elevation.
 SINGLE = 10
 
 #: Arrays of frames of blocks and of joints that are drawn.

@@ -94,10 +94,10 @@ class Observed(Scene):
         self.begin()
 
     def look(self):
-        of = lambda phys: (phys.damage, phys.largest, [[s] for s in phys.slip])
+        memories = lambda phys: (phys.damage, phys.largest, [[s] for s in phys.slip])
         every = lambda what: np.array([[*v] for i in self.model.interactions for v in what(i)])
         memory = [
-            np.column_stack([np.array([[*v] for v in values]) for values in of(i.phys)])
+            np.column_stack([np.array([[*v] for v in values]) for values in memories(i.phys)])
             for i in self.model.interactions
         ]
         energies = list(self.model.energy.balance().values())

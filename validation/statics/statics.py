@@ -146,8 +146,8 @@ def act(scene, cell, target, base):
 
 
 def _momenta(model):
-    """Mass, place, velocity, angular momentum about its centre, and factor on the inertia (``added
-    inertia`` has no weight), of every body and node that moves."""
+    """Mass, place, velocity, angular momentum about its centre, and factor on the inertia, which
+    adds no weight, of every body and node that moves."""
     zones, found = model.zones, []
     factors = dict(enumerate(model.scheme.integrator.inertiaFactors))
     divided = set(zones.bodies) if zones else set()

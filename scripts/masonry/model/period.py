@@ -131,7 +131,7 @@ def _elasticPeriod(structure, direction, share):
         square = solution.findMode(direction)
         acceleration = share * GRAVITY / structure.args.density_scaling
         moved = square and 2 * acceleration * solution.participation() / square
-        if not moved:  # nothing moves along the direction, or without resistance
+        if not moved:  # nothing moves along the direction, or nothing resists it
             return None
         rest, forces, lost = solution.force(), [], structure.energies()[0]
         for amount in (moved, -2 * moved):
