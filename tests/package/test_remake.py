@@ -3,7 +3,9 @@
 them are stale."""
 
 from usual import *
+import ast
 import fnmatch
+import glob
 
 import remake
 
@@ -30,6 +32,16 @@ def test_every_figure_and_table_is_made_by_one_result():
     for path in made:
         makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]
         assert len(makers) == 1, (path, makers)
+
+
+@mark.parametrize("path", sorted(glob.glob("**/*.py", root_dir=remake.HERE, recursive=True)))
+def test_what_the_programs_take_from_the_packages_is_there(path):
+    with open(os.path.join(remake.HERE, path)) as file:
+        nodes = ast.walk(ast.parse(file.read()))
+    taken = [n for n in nodes if isinstance(n, ast.ImportFrom) and n.module.startswith("masonry")]
+    for node in taken:
+        names = ", ".join(one.name for one in node.names)
+        exec(f"from {node.module} import {names}", {})
 
 
 def test_all_is_made_in_two_hours_on_two_cores():

@@ -179,6 +179,18 @@ def test_a_push_back_begins_with_the_force_that_its_drive_held(tmp_path):
     assert 150 < run["initial_stiffness_kN_per_mm"] < 180  # 167 of the first push
 
 
+@mark.parametrize("rate, much", [(800, True), (20, False)])
+def test_an_earlier_push_that_is_too_fast_is_named(tmp_path, capsys, rate, much):
+    scene, top = wall(tmp_path)
+    scene.push(top, 1, rate=rate)
+    scene.release(top, "x")
+    scene.settle()
+    scene.push(top, 0.2)
+    scene.finish()
+    assert ("push (stage 2) is too fast" in capsys.readouterr().out) == much
+    assert not readRun(tmp_path)["too_fast"]  # the last one
+
+
 def test_cycles_that_turn_before_the_drive_has_its_rate_have_the_stiffness_of_a_push(tmp_path):
     found = []
     for n, how in enumerate(("push", "cycle")):

@@ -16,7 +16,7 @@ import sys
 import numpy as np
 from masonry.numbers.files import readCurve
 from masonry_study import Calibration, Specimen, Study, uniform
-from masonry_study.calibrate import UNKNOWN
+from masonry_study.calibrate import MAX_SPREAD
 from masonry_study.gathering import gather
 from masonry_study import local
 from masonry_study.pictures import increasing
@@ -102,7 +102,7 @@ def main():
         one = found(case, jobs)
         low, high = one.intervals
         inside.append((low <= true) & (true <= high))
-        known.append(one.spread < UNKNOWN)
+        known.append(one.spread < MAX_SPREAD)
         cells = [
             f"{t:.3g} ({a:.3g} … {b:.3g}){'' if a <= t <= b else ' **out**'}"
             for t, a, b in zip(true, low, high)

@@ -18,7 +18,8 @@ from ..memory import withoutCollector
 from ..memory import FULL
 from ..numbers import cracks, curves, quantities
 from ..numbers.frames import asFrame
-from ..numbers.run_data import DRIFT, MOVED, RunData
+from ..numbers.quantities import IMBALANCE
+from ..numbers.run_data import BASE, DRIFT, MOVED, TOP, RunData
 from ..run import accuracy
 from ..run.option_table import UNITS
 from . import history, summary
@@ -278,12 +279,26 @@ class ResultSummary:
         yield from self.scene.bounds.over(run)
         if not self.pushed:
             return
+        yield from self._tooFastBefore(run["stages"])
         if run.get("too_fast"):
             yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
         if run.get("damped_share", 0) > pushing.DAMPED:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
         if run.get("sudden_loss", 0) > pushing.SUDDEN:
             yield pushing.tooSudden(self.pushed, run)
+
+    def _tooFastBefore(self, stages):
+        """Warnings of the pushes before those whose numbers run.json has; ``stages``: its entry."""
+        columns = [*map(self.data.whole, (TOP, BASE))]
+        for number, (one, after) in enumerate(zip(stages, stages[1:]), 1):
+            rows = slice(one["first_row"], after["first_row"])
+            isPush = one["load"] and one["load"][0] == "push"
+            if not isPush or rows.start in self.data.rows or rows.start == rows.stop:
+                continue
+            imbalance = curves.dynamicImbalance(*(values[rows] for values in columns))
+            if imbalance > IMBALANCE:
+                name = f"{one['stage']} (stage {number})"
+                yield pushing.tooFast(self.pushed, imbalance, name)
 
 
 def shortened(entry):

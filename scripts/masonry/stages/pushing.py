@@ -364,9 +364,15 @@ def frameSpacing(args):
     return max(args.vtk_every, pathOf(args) / FRAMES if args.history else 0)
 
 
-def tooFast(args, imbalance):
-    """The warning of a push that is too fast, with a remedy: the imbalance grows with the rate."""
+def tooFast(args, imbalance, stage=""):
+    """The warning of a push that is too fast, with a remedy: the imbalance grows with the rate.
+
+    :param args: options of the last push
+    :param stage: name of an earlier push, whose rate may be another; empty: the last push
+    """
     slower = f"--rate {float(f'{args.rate * IMBALANCE / imbalance:.2g}'):g}"
+    if stage:
+        slower = f"{IMBALANCE / imbalance:.2g} of its rate"
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
     # If the step is 1/√2 of the limit without damping, the stiffest joints swing in four steps.
     # Combined damping then finds the same signs in every swing, and can brake a steady motion.
@@ -374,8 +380,8 @@ def tooFast(args, imbalance):
     if args.dt_fraction > max(fours, default):
         cure = f"--dt-fraction {default:g}"
     return (
-        f"the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
-        f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
+        f"{stage or 'the push'} is too fast: {100 * imbalance:.0f} % of the force does not reach"
+        f" the supports, more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
     )
 
 

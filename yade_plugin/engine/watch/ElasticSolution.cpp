@@ -189,8 +189,11 @@ double ElasticSolution::move() {
         load->workBefore(first_ ? 1 : 2, [&](int body) { return motions[body]; });
         if (first_) grown += load->work - before;
     }
-    scene_.integrator->damped += 0.5 * work - grown;
+    // where points of joints opened in the move before, its end was not in equilibrium
+    const double rest = first_ ? 0 : 0.5 * forces.dot(moved_);
+    scene_.integrator->damped += rest + 0.5 * work - grown;
     first_ = false;
+    moved_ = moved;
     moveBy(all);
     return std::sqrt(std::max(0.0, work));
 }

@@ -16,7 +16,8 @@ public:
     // step must have been so short that nothing has moved since. Returns the square root of what the forces that were
     // not in equilibrium do in this motion [J^(1/2)]. A second move corrects what was not linear in the first.
     //
-    // Half of that work counts as taken by damping. In the first move loads grow, and do the other half only.
+    // The mean of these forces before and after a move does work that counts as taken by damping; the forces after it
+    // are known in the next move. In the first move loads grow, and do half of their work only.
     double move();
 
     // Finds the first mode along a direction, while drives hold: that which a sudden uniform acceleration gives most
@@ -47,7 +48,8 @@ private:
     int count_ = 0;           // of those that can move
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
     bool first_ = true;
-    Vector mode_; // displacements divided by the scale
+    Vector moved_; // the last move
+    Vector mode_;  // displacements divided by the scale
     double participation_ = 0;
 };
 
