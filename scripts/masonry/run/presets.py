@@ -20,7 +20,7 @@ BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonr
 #: What ``fast`` promises of a wall in its :data:`RANGE`: of so many walls of validation/trade and
 #: validation/accuracy all but ``missed`` had these errors of peak and work at most, against a fine
 #: and slow run [-].
-PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=1)
+PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=2)
 
 #: The walls on which ``fast`` was measured, pushed once in their plane: least and largest value of
 #: each property of :func:`masonry.scene.summary.properties`.
