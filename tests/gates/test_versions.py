@@ -4,6 +4,7 @@
 import os
 import re
 import subprocess
+from email.utils import parsedate_to_datetime
 
 import tree
 
@@ -22,6 +23,13 @@ def test_change_log_and_citation_are_of_this_version_of_three_numbers():
         ("scripts/debian/changelog", r"^yade-masonry \((\S+)\+ds-\d+\)"),
     ):
         assert re.search(line, tree.read(path), re.M)[1] == version(), path
+
+
+def test_the_release_has_one_date():
+    (day,) = re.findall(r"^## \S+ \((\S+)\)\n\n\*\*From", tree.read("CHANGELOG.md"), re.M)
+    assert f"\ndate-released: {day}\n" in tree.read("CITATION.cff")
+    package = re.search(r"^ -- \S+  (.*)$", tree.read("scripts/debian/changelog"), re.M)[1]
+    assert parsedate_to_datetime(package).date().isoformat() == day
 
 
 def test_the_debian_package_takes_the_version_from_the_same_line():
