@@ -279,26 +279,29 @@ class ResultSummary:
         yield from self.scene.bounds.over(run)
         if not self.pushed:
             return
-        yield from self._tooFastBefore(run["stages"])
+        yield from self._ofEarlierPushes(run["stages"])
         if run.get("too_fast"):
             yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
         if run.get("damped_share", 0) > pushing.DAMPED:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
         if run.get("sudden_loss", 0) > pushing.SUDDEN:
-            yield pushing.tooSudden(self.pushed, run)
+            yield pushing.tooSudden(self.pushed, run["sudden_loss"], run["sudden_loss_at_mm"])
 
-    def _tooFastBefore(self, stages):
+    def _ofEarlierPushes(self, stages):
         """Warnings of the pushes before those whose numbers run.json has; ``stages``: its entry."""
-        columns = [*map(self.data.whole, (TOP, BASE))]
+        columns, paths = [*map(self.data.whole, (MOVED, TOP, BASE))], self.scene.running.state.paths
         for number, (one, after) in enumerate(zip(stages, stages[1:]), 1):
-            rows = slice(one["first_row"], after["first_row"])
-            isPush = one["load"] and one["load"][0] == "push"
-            if not isPush or rows.start in self.data.rows or rows.start == rows.stop:
+            rows, path = slice(one["first_row"], after["first_row"]), paths.get(str(number))
+            if not path or rows.start in self.data.rows or rows.start == rows.stop:
                 continue
-            imbalance = curves.dynamicImbalance(*(values[rows] for values in columns))
+            moved, top, base = (values[rows] for values in columns)
+            name, isLooped = f"{one['stage']} (stage {number})", path[1]
+            imbalance = curves.dynamicImbalance(top, base)
             if imbalance > IMBALANCE:
-                name = f"{one['stage']} (stage {number})"
                 yield pushing.tooFast(self.pushed, imbalance, name)
+            sudden = (0.0, 0.0) if isLooped else curves.suddenLoss(moved, top, base)
+            if sudden[0] > pushing.SUDDEN:
+                yield f"{name}: {pushing.tooSudden(self.pushed, *sudden)}"
 
 
 def shortened(entry):

@@ -394,12 +394,12 @@ def tooDamped(args, share):
     )
 
 
-def tooSudden(args, run):
-    """The warning of a push whose force falls at once, from the entries of run.json."""
+def tooSudden(args, loss, at):
+    """The warning of a push whose force falls at once, by a share of its peak at a displacement
+    [mm]."""
     check = "--preset accurate" if args.blocks == "rigid" else "--dt-fraction 0.78"
     return (
-        f"the force fell by {100 * run['sudden_loss']:.0f} % of its peak within"
-        f" {curves.SUDDEN:g} mm at {run['sudden_loss_at_mm']:.2f} mm: a few bricks gave way at"
-        " once, and which ones can depend on the block model, the points of joints and the time"
-        f" step; {check} is the cheapest check"
+        f"the force fell by {100 * loss:.0f} % of its peak within {curves.SUDDEN:g} mm at"
+        f" {at:.2f} mm: a few bricks gave way at once, and which ones can depend on the block"
+        f" model, the points of joints and the time step; {check} is the cheapest check"
     )
