@@ -34,14 +34,35 @@ def test_every_figure_and_table_is_made_by_one_result():
         assert len(makers) == 1, (path, makers)
 
 
-@mark.parametrize("path", sorted(glob.glob("**/*.py", root_dir=remake.HERE, recursive=True)))
-def test_what_the_programs_take_from_the_packages_is_there(path):
+PROGRAMS = sorted(glob.glob("**/*.py", root_dir=remake.HERE, recursive=True))
+
+
+def nodesOf(path):
     with open(os.path.join(remake.HERE, path)) as file:
-        nodes = ast.walk(ast.parse(file.read()))
-    taken = [n for n in nodes if isinstance(n, ast.ImportFrom) and n.module.startswith("masonry")]
-    for node in taken:
-        names = ", ".join(one.name for one in node.names)
-        exec(f"from {node.module} import {names}", {})
+        return [*ast.walk(ast.parse(file.read()))]
+
+
+def given(module):
+    """The names that other programs may take of those with a name."""
+    paths = [path for path in PROGRAMS if os.path.basename(path) == f"{module}.py"]
+    nodes = [node for path in paths for node in nodesOf(path)]
+    names = {n.name for n in nodes if isinstance(n, (ast.FunctionDef, ast.ClassDef, ast.alias))}
+    return names | {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+
+
+@mark.parametrize("path", PROGRAMS)
+def test_what_a_program_takes_from_packages_and_other_programs_is_there(path):
+    nodes = nodesOf(path)
+    for node in nodes:
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("masonry"):
+            names = ", ".join(one.name for one in node.names)
+            exec(f"from {node.module} import {names}", {})
+    imports = [node for node in nodes if isinstance(node, ast.Import)]
+    names = {name: given(name) for node in imports for name in [one.name for one in node.names]}
+    for node in nodes:
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            known = names.get(node.value.id)
+            assert not known or node.attr in known, f"{node.value.id}.{node.attr}"
 
 
 def test_all_is_made_in_two_hours_on_two_cores():

@@ -21,6 +21,7 @@ import masonry_capacity
 import numpy as np
 import results
 from masonry.numbers.files import readCurve
+from masonry_capacity.piers import Pier
 
 sys.path.insert(0, os.path.dirname(assumed.HERE))
 import studies
@@ -34,19 +35,19 @@ LETTERS = {"flexure": "F", "shear": "S", "sliding": "S"}
 
 
 def code(row):
-    """The wall for the formulas of codes.py, with the strengths of the row."""
+    """The wall for the formulas of the codes, with the strengths of the row."""
     long, high = row.stone
-    return codes.Wall(
-        1e3 * row.height,
-        1e3 * row.length,
-        1e3 * row.thickness,
-        1e3 * row.arm,
-        row.force,
-        1e-6 * row.fc,
-        1e-6 * row.fb,
-        1e-6 * row.fv0,
-        1e-6 * row.fv0,
-        2 * high / long,
+    return Pier(
+        height=1e3 * row.height,
+        length=1e3 * row.length,
+        thickness=1e3 * row.thickness,
+        span=1e3 * row.arm,
+        force=row.force,
+        strength=1e-6 * row.fc,
+        unit=1e-6 * row.fb,
+        tau0=1e-6 * row.fv0,
+        fv0=1e-6 * row.fv0,
+        slope=2 * high / long,
     )
 
 
