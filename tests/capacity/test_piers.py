@@ -2,6 +2,7 @@
 """Checks of piers and spandrels by codes, against numbers by hand."""
 
 from usual import *
+from dataclasses import replace
 from made_runs import writeRun
 from masonry_capacity import piers
 
@@ -49,6 +50,28 @@ def test_a_short_span_slides_and_irregular_masonry_cracks_along_its_diagonal(tmp
     _, row = piers.check(folder, tau0=0.06)
     assert row["failure"] == "shear"
     assert row["capacity_kN"] == approx(0.2e3 * 0.09 / 1.5 * math.sqrt(1 + 0.5 / 0.09))
+
+
+#: 1.2 m high, 1 m long, 0.2 m thick, under 100 kN: σ0 = 0.5 MPa, b = 1.2.
+SQUAT = piers.Pier(1200, 1000, 200, 250, 100e3, 5.0, 10.0, 0.06, 0.1, 1.0)
+
+
+@mark.parametrize(
+    "strength, newtons",
+    [
+        # the whole base is compressed: 0.1 · 0.2e6 + 0.4 · 100e3
+        (lambda: piers.alongBed(SQUAT, 0.1, 0.4), 60e3),
+        (lambda: piers.diagonal(SQUAT, 0.09), 0.2e6 * 0.09 / 1.2 * math.sqrt(1 + 0.5 / 0.09)),
+        (lambda: piers.stepped(SQUAT, 0.1), 0.2e6 / 1.2 * (0.1 + 0.577 * 0.5) / 1.577),
+        # cracks through units of 1 MPa: ft = 0.1 MPa
+        (
+            lambda: piers.stepped(replace(SQUAT, unit=1.0), 0.1),
+            0.2e6 * 0.1 / 1.2 * math.sqrt(1 + 0.5 / 0.1) / 2.3,
+        ),
+    ],
+)
+def test_formulas_are_those_of_the_codes(strength, newtons):
+    assert strength() == approx(newtons, rel=1e-3)
 
 
 @mark.parametrize(
