@@ -15,7 +15,8 @@ MOST = 20_000  # steps of a script
 SCRIPTS = int(os.environ.get("RESUME_SCRIPTS", 20))
 #: Stages from whose beginning displacements count on; supports and a search of later stages; loads
 #: and accelerations beside each other; steps so long that a run is stopped within a look at rest; a
-#: vertical load that keeps its line, so that it moves with every row; a fall to the ground.
+#: vertical load that keeps its line, so that it moves with every row; a fall to the ground beside a
+#: tie.
 KNOWN = {
     "stages": """
 scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate())
@@ -119,6 +120,7 @@ wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
 stones = materials.dry(0.6, 2e8, density=2200)
 scene = Scene("s", wall, stones, plane=False, collapse="follow")
 scene.platen("bottom")
+scene.tie((0.3, 0.15, 0.75), anchor=(0.3, -1, 0.75), stiffness=1e6, strength=50)
 scene.settle()
 scene.lean(0.5, (0, 1, 0))
 scene.result("reach", [a["value"] for a in scene.answers if a["name"] == "rubble_reach"][0], "m")

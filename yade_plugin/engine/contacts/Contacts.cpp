@@ -6,6 +6,7 @@
 #include "engine/bodies/BodyCheck.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace masonry {
@@ -495,7 +496,8 @@ void Contacts::boundPairs(const SceneContents& contents, double damping, bool an
         for (int side = 0; side < 2 && !joint.joint.geom->converted(); ++side)
             if (const double times = share(joint.bodies[side], joint.bodies[1 - side]); times > 0)
                 at(joint.bodies[side]) += times * joint.stiffness[side];
-    ofAll_ = contents.connectors.empty() ? largest() : HUGE_VAL;
+    // none is known beside connectors; a checkpoint has finite numbers only
+    ofAll_ = contents.connectors.empty() ? largest() : std::numeric_limits<double>::max();
     unbounded_ = false;
 }
 
