@@ -75,6 +75,24 @@ def test_formulas_are_those_of_the_codes(strength, newtons):
 
 
 @mark.parametrize(
+    "code, unit, failure, numbers",
+    [
+        # flexure of 177 kN, units of 98.7 kN
+        (piers.EN, 10.0, "sliding", (60, 4 / 3 * 0.4)),
+        # 0.065 · 1 MPa on the whole base
+        (piers.EN, 1.0, "shear", (13, 4 / 3 * 0.4)),
+        # in steps, as above
+        (piers.NTC, 10.0, "shear", (41.059, 0.5)),
+        (piers.NTC, 1.0, "shear", (17.750, 0.5)),
+    ],
+)
+def test_the_smallest_strength_has_its_drift(code, unit, failure, numbers):
+    found = piers.CODES[code](replace(SQUAT, unit=unit))
+    assert found.failure == failure
+    assert (found.peak, found.drift) == approx(numbers, rel=1e-4)
+
+
+@mark.parametrize(
     "normal, tie, capacities, clause",
     [
         # fh = 2.5 MPa, σ0 = 0.5, H0 = 1 m: 50 kN (1 - 1.15/5), and 50 kN (1 - 1/5/0.85)
