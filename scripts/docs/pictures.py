@@ -107,9 +107,9 @@ def entries(folder, name="run.json"):
 
 def saved(image, name):
     """Write a picture with as many colours as its size allows."""
-    path = os.path.join(OUT, name + ".png")
+    image, path = image.convert("RGB"), os.path.join(OUT, name + ".png")
     for colours in (256, 128, 64, 32, 16):
-        image.convert("RGB").quantize(colours).save(path, optimize=True)
+        image.quantize(colours, Image.Quantize.FASTOCTREE).save(path, optimize=True)
         if os.path.getsize(path) < LARGEST:
             return
     raise ValueError(f"{path} is too large")
