@@ -193,6 +193,21 @@ def bundle(static):
             pathlib.Path(path).write_text(begin + text[part.end() :], encoding="utf-8")
 
 
+def unlinked(page):
+    """Take the links off a page for print that lead to files beside it, or to pages that it leaves
+    out."""
+    file = pathlib.Path(page)
+    text = file.read_text(encoding="utf-8")
+    known = set(re.findall(r'\bid="([^"]+)"', text))
+
+    def kept(link):
+        leads = re.match("[a-z]+:", link[1]) or link[1].rpartition("#")[2] in known
+        return link[0] if leads else link[2]
+
+    link = r'<a [^>]*?href="([^"]*)"[^>]*>(.*?)</a>'
+    file.write_text(re.sub(link, kept, text, flags=re.S), encoding="utf-8")
+
+
 def pdf(page, target):
     """Print a page to a PDF with chromium, without a display and without a network."""
     words = """
@@ -230,7 +245,9 @@ def main(words=None):
     said(os.path.join(out, "html", "index.html"))
     if not args.no_pdf:
         sphinx(out, "singlehtml", os.path.join(out, "paper"), "-t", "paper")
-        pdf(os.path.join(out, "paper", "index.html"), os.path.join(out, "masonry.pdf"))
+        page = os.path.join(out, "paper", "index.html")
+        unlinked(page)
+        pdf(page, os.path.join(out, "masonry.pdf"))
         said(os.path.join(out, "masonry.pdf"))
     return 0
 

@@ -2,12 +2,14 @@
 """How Sphinx makes the site and the PDF; ``build.py`` calls it."""
 
 import inspect
+import itertools
 import os
 import re
 import sys
 from typing import Annotated, get_args, get_origin
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
 
 import validators
 import masonry
@@ -48,12 +50,13 @@ mathjax2_config = {
 myst_update_mathjax = False
 
 html_static_path = [
-    os.path.join(os.path.dirname(os.path.abspath(__file__)), "static"),
+    os.path.join(HERE, "static"),
     os.environ["MASONRY_DOCS_STATIC"],
 ]
 html_title = f"Masonry for YADE {release}"
 html_show_sourcelink = False
 html_copy_source = False
+html_search_scorer = os.path.join(HERE, "scorer.js")
 if tags.has("paper"):  # noqa: F821, Sphinx knows it
     html_theme = "basic"
     html_css_files = ["print.css"]
@@ -72,21 +75,23 @@ def _validatorsOf(command):
 
 def _withTypes(lines, checks):
     """A docstring with the type, unit and bounds of each argument, as its check has them."""
-    text, types, more = "\n".join(lines), [], []
+    isField = lambda line: line.startswith((":param", ":return", ":raise"))
+    first = next((n for n, line in enumerate(lines) if isField(line)), len(lines))
+    fields, types, place = [], [], 0
+    for line in lines[first:]:
+        if isField(line):
+            fields.append([])
+        fields[-1].append(line)
     for one, validator in checks.items():
         said = validators.meaning(validator)
-        if f":param {one}:" not in text:
-            more.append(f":param {one}: {said}")
-        elif said:
-            types.append(f":type {one}: {said}")
-    isField = lambda line: line.startswith((":param", ":return", ":raise"))
-    first = next((n for n, line in enumerate(lines) if isField(line)), None)
-    if first is None:
-        return [*lines, "", *more, ""]
-    last = next(
-        (n for n, line in enumerate(lines) if line.startswith((":return", ":raise"))), first
-    )
-    return [*lines[:first], *types, *lines[first:last], *more, *lines[last:]]
+        known = [n for n, field in enumerate(fields) if field[0].startswith(f":param {one}:")]
+        if known:
+            place = known[0]
+            types += [f":type {one}: {said}"] if said else []
+        else:  # in the order of the arguments
+            fields.insert(place, [f":param {one}: {said}"])
+        place += 1
+    return [*lines[:first], "", *types, *itertools.chain(*fields), ""]
 
 
 def typesFromChecks(app, what, name, thing, options, lines):
@@ -124,6 +129,11 @@ def functionsByName(app, what, name, thing, options, signature, returns):
     return plain.replace("<lambda>", "lambda"), returns
 
 
+def withoutFieldsOfTuples(app, what, name, thing, skip, options):
+    """Leave out what Python itself says of the fields of a named tuple: their numbers."""
+    return skip or type(thing).__name__ == "_tuplegetter"
+
+
 def literally(name, raw, text, line, inliner, options=None, content=()):
     """The role of YADE's documentation in which the default of an attribute stands."""
     return [nodes.literal(raw, text)], []
@@ -135,4 +145,5 @@ def setup(app):
     app.add_role("ydefault", literally)
     app.add_autodocumenter(ConstantDocumenter, override=True)
     app.connect("autodoc-process-docstring", typesFromChecks)
+    app.connect("autodoc-skip-member", withoutFieldsOfTuples)
     app.connect("autodoc-process-signature", functionsByName)

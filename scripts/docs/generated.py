@@ -21,14 +21,16 @@ from masonry.stages import LATER, STAGES
 
 from tree import ROOT, read
 
-#: Programs with options of their own: how they are called, and what Python runs then. Others take a
-#: folder alone.
+#: Programs with options of their own, as Python is asked for them. Others take a folder alone.
 PROGRAMS = (
-    ("python3 scripts/plot.py", ["scripts/plot.py"]),
-    ("python3 scripts/view.py", ["scripts/view.py"]),
-    ("python3 -m masonry_capacity", ["-m", "masonry_capacity"]),
-    ("python3 -m masonry_study", ["-m", "masonry_study"]),
-    ("python3 -m masonry_study.report", ["-m", "masonry_study.report"]),
+    "scripts/plot.py",
+    "scripts/view.py",
+    "-m masonry_view.report",
+    "-m masonry_capacity",
+    "-m masonry_capacity.piers",
+    "-m masonry_study",
+    "-m masonry_study.report",
+    "-m masonry_study.row",
 )
 
 
@@ -48,14 +50,15 @@ def table(rows, widths):
 
 
 def escaped(text):
-    """A plain text as reStructuredText shows it."""
-    return re.sub(r"([*`|_\\<>])", r"\\\1", text)
+    """A plain text as reStructuredText shows it, with the names of options as code: two hyphens
+    would become a dash."""
+    text = re.sub(r"([*`|_\\<>])", r"\\\1", text)
+    return re.sub(r"--[a-z-]+", r"``\g<0>``", text)
 
 
 def summary(thing):
-    """The first sentence of a docstring."""
-    about = " ".join((inspect.getdoc(thing) or "").split("\n\n")[0].split())
-    return re.split(r"(?<=[.:])\s(?=[A-Z])", about)[0].rstrip(":").removesuffix(".")
+    """What a docstring says up to the first colon or the end of its first sentence."""
+    return " ".join(re.split(r"[.:](?:\s|$)", inspect.getdoc(thing))[0].split())
 
 
 #: Methods of a scene that its stages call, and no script.
@@ -78,7 +81,7 @@ def _commands():
     stages = {}
     for stage in (*STAGES, *LATER):
         family = sys.modules[_inner(stage).__module__]
-        stages.setdefault(summary(family).partition(":")[0], []).append(stage.__name__)
+        stages.setdefault(summary(family), []).append(stage.__name__)
     said = {name for names in (*described.values(), *stages.values()) for name in names}
     documented = [n for n, f in vars(Scene).items() if inspect.getdoc(_inner(f))]
     own = [n for n in documented if n not in said | FOR_STAGES and n[0] != "_"]
@@ -150,8 +153,9 @@ def optionsOfScenes():
     )
     text += table(rows, "30 12 58") + heading("Programs", "-")
     around = dict(cwd=ROOT, env={**os.environ, "COLUMNS": "100"})
-    for name, command in PROGRAMS:
-        words = ["/usr/bin/python3", *command, "--help"]
+    for program in PROGRAMS:
+        name = f"/usr/bin/python3 {program}"
+        words = [*name.split(), "--help"]
         run = subprocess.run(words, capture_output=True, text=True, **around)
         if run.returncode:
             raise RuntimeError(f"{name} --help: {run.stdout}{run.stderr}")

@@ -27,7 +27,7 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
-from PIL import Image
+from PIL import Image, ImageOps
 
 from masonry_view.painting import CRACKS, CRUSHED, SHADES
 
@@ -107,9 +107,9 @@ def entries(folder, name="run.json"):
 
 def saved(image, name):
     """Write a picture with as many colours as its size allows."""
-    path = os.path.join(OUT, name + ".png")
+    image, path = image.convert("RGB"), os.path.join(OUT, name + ".png")
     for colours in (256, 128, 64, 32, 16):
-        image.convert("RGB").quantize(colours).save(path, optimize=True)
+        image.quantize(colours, Image.Quantize.FASTOCTREE).save(path, optimize=True)
         if os.path.getsize(path) < LARGEST:
             return
     raise ValueError(f"{path} is too large")
@@ -142,10 +142,10 @@ def box(axes, corner, width, height, text="", colour=SHADES["brick"], **settings
 
 
 def cropped(path):
-    """A picture without its white margin."""
+    """A picture with little of its white margin."""
     image = Image.open(path).convert("RGB")
-    rows, along = np.nonzero((np.asarray(image) < 250).any(axis=2))
-    return image.crop((along.min(), rows.min(), along.max() + 1, rows.max() + 1))
+    box = ImageOps.invert(image).point(lambda value: 255 * (value > 5)).getbbox()
+    return ImageOps.expand(image.crop(box), 10, "white")
 
 
 # -- the pictures ----------------------------------------------------------------------------------

@@ -62,6 +62,12 @@ def outsideCode(change, text, code=_CODE):
     return "".join([*found, change(text[done:])])
 
 
+def titleOfPart(path):
+    """The title of a document that has none, since it is a part of the README beside it."""
+    folder, name = posixpath.split(path)
+    return re.search("^# .*", read(f"{folder}/README.md"), re.M)[0] + f": {name[:-3]}"
+
+
 class Stage:
     """The folder with the sources of the site.
 
@@ -140,8 +146,8 @@ class Stage:
         text = outsideCode(change, read(path) if text is None else text)
         text = outsideCode(toModules, text, _BLOCKS)
         text = _EQUATION.sub(r"\1```{math}", text)  # GitHub has another word for it
-        if not re.search("^# ", text, re.M):  # a part of another document
-            text = f"# {path}\n\n{text}"
+        if not re.search("^# ", text, re.M):
+            text = f"{titleOfPart(path)}\n\n{text}"
         self.write(page(path), text)
 
     def sources(self):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Strength and drift capacity of piers and spandrels by EN 1998-3:2005 and NTC 2018, beside what a
-run found in them.
+run found in them::
 
     /usr/bin/python3 -m masonry_capacity.piers results/WALL --fb 20  # [MPa]; writes piers.csv
 
@@ -17,8 +17,10 @@ How far it turns is not checked.
 import argparse
 import csv
 import glob
+import inspect
 import math
 import os
+import re
 import sys
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
@@ -284,8 +286,8 @@ def check(
     of the run, all without signs. Of a spandrel h is its length and L its depth.
 
     :param directory: folder of results
-    :param fm: compressive strength, and ``fv0``: cohesion of the bed joint [MPa]; None: those of
-        the joint "bed" of the run
+    :param fm: compressive strength [MPa]; None: that of the joint "bed" of the run
+    :param fv0: cohesion of the bed joint [MPa]; None: that of the run
     :param tau0: for masonry without regular bond in place of ``fv0`` [MPa]
     :param fb: compressive strength of the units, which bounds shear [MPa]; None: no bound
     :param fh: horizontal compressive strength of spandrels [MPa]; None: half of ``fm``
@@ -366,12 +368,14 @@ def check(
 @program
 def main(words: Sequence[str] | None = None) -> None:
     """The program. Returns its exit status."""
-    p = argparse.ArgumentParser(prog="python3 -m masonry_capacity.piers", description=check.__doc__)
-    p.add_argument("result", metavar="FOLDER", help="folder of results")
+    about, *fields = re.split(r"\n:\w+ ?", inspect.getdoc(check))
+    texts = dict(" ".join(field.replace("``", "").split()).split(": ", 1) for field in fields)
+    p = argparse.ArgumentParser(prog="python3 -m masonry_capacity.piers", description=about)
+    p.add_argument("result", metavar="FOLDER", help=texts["directory"])
     for name in ("fm", "fv0", "tau0", "fb", "fh"):
-        p.add_argument(f"--{name}", type=float, metavar="MPA", help="strength [MPa]")
-    p.add_argument("--slope", type=float, default=GOOD_BOND, help="height over overlap of a unit")
-    p.add_argument("--tie", type=float, metavar="KN", help="tensile strength at spandrels [kN]")
+        p.add_argument(f"--{name}", type=float, metavar="MPA", help=texts[name])
+    p.add_argument("--slope", type=float, default=GOOD_BOND, help=texts["slope"])
+    p.add_argument("--tie", type=float, metavar="KN", help=texts["tie"])
     args = vars(p.parse_args(words))
     folder = args.pop("result")
     rows, path = check(folder, **args), os.path.join(folder, TABLE)

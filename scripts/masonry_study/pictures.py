@@ -288,7 +288,7 @@ def fitted(path, fits, xLabel, yLabel):
             axis.plot(*points, "o", ms=4, color=dot, label=own)
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
-        drawing.finish(axis, xLabel, textwrap.fill(yLabel, 45), loc="lower right")
+        drawing.finish(axis, xLabel, textwrap.fill(yLabel, 45), loc="best")
 
 
 # -- all curves ------------------------------------------------------------------------------------

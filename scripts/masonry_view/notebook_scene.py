@@ -57,11 +57,12 @@ def _state(scene):
 
 
 def _standing(scene):
-    title, views, state = scene.description.title, scene.description.views, scene.running.state
-    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}
+    title, state = scene.description.title, scene.running.state
     with tempfile.TemporaryDirectory() as folder:
-        MasonryVtkRecorder(directory=folder)()
+        recorder = MasonryVtkRecorder(directory=folder)
+        recorder()
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
+    run = scene.outcome.describe() | {"kinds": recorder.kinds, "answers": scene.answers}
     when = f"after {state.stage}" if state.stage else "as built"
     return titled(
         f"{title}: {_state(scene)}",

@@ -3,8 +3,11 @@
 packages of Jupyter."""
 
 import base64
+import io
 import queue
 from usual import *
+from masonry_view import painting
+from PIL import Image
 
 pytestmark = mark.slow
 jupyter = pytest.importorskip(
@@ -111,8 +114,17 @@ def test_a_scene_shows_itself_before_between_and_after_its_stages(kernel, tmp_pa
     assert "steps/s" not in printed(progress)
     page = shown(kernel.say("scene"))
     assert len(pictures(page)) == 2 and "push: peak" in page
+    standing = pictures(page)[0]
     kernel.say("scene.finish()")
     page = shown(kernel.say("scene"))
+    both = [
+        np.asarray(Image.open(io.BytesIO(p)).convert("RGB"), int)
+        for p in (standing, pictures(page)[0])
+    ]
+    # below their titles both show the same: crack surfaces of bricks that are whole are no joints
+    assert (np.abs(both[0] - both[1])[50:].max(axis=2) > 50).mean() < 1e-4
+    reds = np.abs(both[0] - painting.rgb(painting.CRACKS["open"])).max(axis=2)
+    assert (reds < 10).sum() > 50  # open joints have their colour
     assert len(pictures(page)) == 2 and "force at the supports at the peak" in page
     run = json.load(open(tmp_path / "shown" / "run.json"))
     assert f"{run['peak_base_shear_kN']:.4g}" in page

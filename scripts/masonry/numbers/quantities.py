@@ -187,7 +187,7 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "one way": ("A push in one direction has these, too", lambda d: d.isPush and not d.isLooped),
     "loops": ("A push that follows a history has these, too", lambda d: d.isPush and d.isLooped),
     "wall": (
-        "A whole wall in running bond that a platen pushes has these with --lean, which leaves"
+        "A whole wall in running bond that a platen pushes has these with ``--lean``, which leaves"
         " no frames; masonry_view.measure finds them from frames",
         lambda d: d.isPush and d.joints is not None and "wall" in d.run,
     ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``travel``: a load that goes over a structure, and stands at one place after the other."""
+"""A load that goes over a structure and stands at one place after the other: ``travel``."""
 
 import csv
 import zlib

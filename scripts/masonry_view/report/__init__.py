@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The report of a run: one file, report.html, that any browser opens without a server or a network.
-No YADE is needed.
+No YADE is needed::
 
     /usr/bin/python3 -m masonry_view.report results/wall_comp4  # writes report.html there
     /usr/bin/python3 -m masonry_view.report results/wall_comp4 -o wall.html
