@@ -43,7 +43,7 @@ def nodesOf(path):
 
 
 def given(module):
-    """The names that other programs may take of those with a name."""
+    """The names that programs with this name of a file define or import."""
     paths = [path for path in PROGRAMS if os.path.basename(path) == f"{module}.py"]
     nodes = [node for path in paths for node in nodesOf(path)]
     names = {n.name for n in nodes if isinstance(n, (ast.FunctionDef, ast.ClassDef, ast.alias))}

@@ -34,14 +34,16 @@ def test_elastic_joints_are_in_equilibrium_after_one_solution(tmp_path, blocks, 
 
 
 def test_points_that_open_without_loss_are_in_the_balance_of_a_solution(tmp_path):
-    """Dry points open over a brick that is held; the second and later moves correct the first."""
+    """Points without strength open over a brick that is held, so the first move is corrected."""
     wall, settings = bricks.Wall(0.44, 0.243, halves=False), dict(blocks="deformable", plane=False)
     scene = standing(tmp_path, wall, materials.calciumSilicate(), joints="brittle", **settings)
     scene.press(scene.platen("top", rotation="held", height=0.05), 0.2e6)
     scene.hold((0.11, 0.05, 0.12))
     scene.settle()
     assert scene.running.state.stages[0]["solved"]
-    assert abs(scene.model.energy.balance()["error"]) < 1e-5  # 0.017 without the second
+    assert (
+        abs(scene.model.energy.balance()["error"]) < 1e-5
+    )  # 0.017 if forces after a move do not count
     scene.finish()
 
 

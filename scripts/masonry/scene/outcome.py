@@ -289,12 +289,12 @@ class ResultSummary:
 
     def _ofEarlierPushes(self, stages):
         """Warnings of the pushes before those whose numbers run.json has; ``stages``: its entry."""
-        columns, paths = [*map(self.data.whole, (MOVED, TOP, BASE))], self.scene.running.state.paths
+        paths = self.scene.running.state.paths
         for number, (one, after) in enumerate(zip(stages, stages[1:]), 1):
             rows, path = slice(one["first_row"], after["first_row"]), paths.get(str(number))
             if not path or rows.start in self.data.rows or rows.start == rows.stop:
                 continue
-            moved, top, base = (values[rows] for values in columns)
+            moved, top, base = (self.data.whole(name)[rows] for name in (MOVED, TOP, BASE))
             name, isLooped = f"{one['stage']} (stage {number})", path[1]
             imbalance = curves.dynamicImbalance(top, base)
             if imbalance > IMBALANCE:

@@ -496,7 +496,7 @@ void Contacts::boundPairs(const SceneContents& contents, double damping, bool an
         for (int side = 0; side < 2 && !joint.joint.geom->converted(); ++side)
             if (const double times = share(joint.bodies[side], joint.bodies[1 - side]); times > 0)
                 at(joint.bodies[side]) += times * joint.stiffness[side];
-    // none is known beside connectors; a checkpoint has finite numbers only
+    // Beside connectors no bound is known. It is finite, as every number of a checkpoint must be.
     ofAll_ = contents.connectors.empty() ? largest() : std::numeric_limits<double>::max();
     unbounded_ = false;
 }

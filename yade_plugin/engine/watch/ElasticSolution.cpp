@@ -189,9 +189,9 @@ double ElasticSolution::move() {
         load->workBefore(first_ ? 1 : 2, [&](int body) { return motions[body]; });
         if (first_) grown += load->work - before;
     }
-    // where points of joints opened in the move before, its end was not in equilibrium
-    const double rest = first_ ? 0 : 0.5 * forces.dot(moved_);
-    scene_.integrator->damped += rest + 0.5 * work - grown;
+    // The end of the move before was not in equilibrium if points of joints opened in it.
+    const double workAtEnd = first_ ? 0 : 0.5 * forces.dot(moved_);
+    scene_.integrator->damped += workAtEnd + 0.5 * work - grown;
     first_ = false;
     moved_ = moved;
     moveBy(all);
