@@ -37,5 +37,5 @@ def study(scene, levels=None, **options):
         levels=levels or LEVELS,
         unit="m/s²",
         every=EVERY,
-        options=options,
+        options={"points": 5, **options},
     )

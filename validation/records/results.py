@@ -3,7 +3,7 @@
 
 /usr/bin/python3 validation/records/results.py DIR
 
-DIR has the folders of the studies: parapet, gable, facade, ...
+DIR has the folders of the studies: ida_parapet, ida_gable, ida_facade.
 """
 
 import os
@@ -93,7 +93,7 @@ def main(folder):
     """The program."""
     all, fitted, moved = {}, [], []
     for name, (point, half) in POINTS.items():
-        place = os.path.join(folder, name)
+        place = os.path.join(folder, f"ida_{name}")
         try:
             found = Demands(Record(place), f"shake_2_largest_displacement_of_{point}_y_mm")
             all[name] = found, fits(found, place)
