@@ -3,7 +3,7 @@
 until it falls.
 
 Between 0.1097 and 0.1103 g the return bends off the wall with which it interlocks. It takes about
-three minutes.
+two minutes.
 """
 
 from masonry import Scene, bricks, materials

@@ -3,7 +3,7 @@
 acceleration.
 
 Between 0.448 and 0.450 g one side opens along its meridians and turns outwards. It takes about
-8 s.
+10 s.
 """
 
 from masonry import Scene, bricks, materials

@@ -4,7 +4,7 @@ wall below stands.
 
 The triangle is 0.22 m thick, in a weak lime mortar, so what falls is pieces that hold together
 until they land. About 45 stones fall; impacts decide how many exactly. Without damping. It takes
-about a minute.
+under two minutes.
 """
 
 import math

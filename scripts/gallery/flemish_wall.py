@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A wall in Flemish bond, two wythes thick, between stiff beams: pushed along its plane. In space.
 
-It shears through its bed joints. It takes about 10 s.
+It shears through its bed joints. It takes about 15 s.
 """
 
 from masonry import Scene, bricks, materials

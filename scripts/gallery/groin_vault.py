@@ -3,7 +3,7 @@
 
 Every pier carries a quarter of the weight, 22.47 kN. Moments of half a vault about its crown allow
 a thrust between 6.2 kN, from the top of the crown to the inner edges of the springings, and 13.1
-kN; it falls from 9.1 to 7.3 kN. It takes about 15 s.
+kN; it falls from 9.1 to 7.3 kN. It takes about 3 s.
 """
 
 from masonry import Scene, bricks, materials

@@ -2,7 +2,7 @@
 """A free-standing parapet, 0.9 m high and 0.22 m thick, shaken out of its plane by a record.
 Without damping.
 
-It rocks, slides and stays. It takes about 2 s.
+It rocks, slides and stays. It takes about 4 s.
 """
 
 import math

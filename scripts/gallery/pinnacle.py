@@ -2,7 +2,7 @@
 """A pinnacle of six drums, read from a file: a horizontal acceleration grows until it falls.
 
 It tips about the edge of its foot between 0.587 and 0.589 g; by hand at 0.588 g. It takes about
-2 s.
+3 s.
 """
 
 import os

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A free block of 0.25 × 1.0 m that a short pulse sets rocking, without damping.
 
-It swings with the periods of Housner's rigid block. It takes about 1 s.
+It swings with the periods of Housner's rigid block. It takes about 2 s.
 """
 
 from masonry import Scene, bricks, materials

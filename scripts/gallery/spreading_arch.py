@@ -2,7 +2,7 @@
 """A dry arch of 21 voussoirs whose supports spread until it falls, followed to the ground.
 
 Its thickness is 0.12 of its middle radius. It falls with hinges, and its stones lie on the ground.
-``--spread`` is how far the right support moves at most. It takes about 20 s.
+``--spread`` is how far the right support moves at most. It takes about 5 s.
 """
 
 from masonry import Scene, bricks, materials

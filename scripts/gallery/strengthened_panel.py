@@ -4,7 +4,7 @@ in mortar on the face that opens.
 
 ``--layer`` puts the textile on. The panel stands 0.159 g without it, and 0.430 g with it, when it
 slides off its top; limit analysis, whose blocks turn about their edges and not about a place
-inside, has 0.1745 and 0.462 g at most. It takes about two minutes.
+inside, has 0.1745 and 0.462 g at most. It takes about a minute.
 """
 
 from masonry import Scene, bricks, materials

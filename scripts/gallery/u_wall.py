@@ -3,7 +3,7 @@
 which it tips about its face.
 
 It falls between 0.513 and 0.516 g; the distance of its centre of mass from the face over its
-height is 0.5194. ``--tee``: a wall in T, between 0.385 and 0.388 g, 0.3936. It takes about 15 s.
+height is 0.5194. ``--tee``: a wall in T, between 0.385 and 0.388 g, 0.3936. It takes about 7 s.
 """
 
 from masonry import AT_REST, Scene, bricks, materials

@@ -6,23 +6,26 @@ import sys
 from .terminal import say
 
 MODULES = {
-    "masonry.assembly": "masonry.model",
-    "masonry.basics": "masonry.errors, masonry.terminal and masonry.units",
-    "masonry.capacity": "masonry_capacity",
-    "masonry.common": "masonry",
+    "masonry.batch": "masonry.run.batch",
+    "masonry.checkpoints": "masonry.run.checkpoints",
+    "masonry.columns": "masonry.numbers.columns",
+    "masonry.comparison": "masonry_view.comparison",
+    "masonry.curves": "masonry.numbers.curves",
+    "masonry.described": "masonry.scene.targets",
+    "masonry.fields": "masonry.materials.fields",
+    "masonry.figures": "masonry_view.figures",
+    "masonry.frames": "masonry.numbers.frames",
+    "masonry.ground": "masonry.scene.ground",
+    "masonry.history": "masonry.scene.history",
     "masonry.limit": "masonry_limit",
-    "masonry.read": "masonry_view, and masonry.numbers for numbers and files of a run",
-    "masonry.scene.fields": "masonry.materials.fields",
-    "masonry.scene.materials": "masonry.materials",
-    "masonry.scene.stages": "masonry.stages",
+    "masonry.loops": "masonry.numbers.loops",
+    "masonry.measure": "masonry_view.measure",
+    "masonry.options": "masonry.scene.options",
+    "masonry.presets": "masonry.run.presets",
+    "masonry.results": "masonry.numbers.files",
     "masonry.study": "masonry_study",
-}
-#: Beginnings of names of programs; the first that fits counts.
-PROGRAMS = {
-    "masonry.read.bilinear": "masonry_capacity.bilinear_curve",
-    "masonry.read": "masonry_view",
-    "masonry.capacity": "masonry_capacity",
-    "masonry.study": "masonry_study",
+    "masonry.viewer": "masonry_view.viewer",
+    "masonry.window": "masonry.model.window",
 }
 
 
@@ -36,11 +39,10 @@ class Finder:
             return None
         if sys.argv[:1] == ["-m"]:
             program = sys.orig_argv[sys.orig_argv.index("-m") + 1]
-            for old, new in PROGRAMS.items():
-                if program.startswith(old):
-                    new += program.removeprefix(old)
-                    say(f"{program} has moved: /usr/bin/python3 -m {new}", sys.stderr)
-                    raise SystemExit(2)
+            if program.startswith(name):
+                new = MODULES[name] + program.removeprefix(name)
+                say(f"{program} has moved: /usr/bin/python3 -m {new}", sys.stderr)
+                raise SystemExit(2)
         raise ModuleNotFoundError(f"{name} has moved: it is {MODULES[name]} now", name=name)
 
 

@@ -3,8 +3,10 @@
 
 from usual import *
 import glob
+import importlib.util
 
 import masonry
+from masonry import moved
 
 INSTALLED = os.path.dirname(masonry.__path__[0])
 WINGS = "view limit capacity study".split()
@@ -87,8 +89,7 @@ def test_a_run_without_the_viewer_has_its_numbers_and_no_figures(clone):
 @mark.parametrize(
     "old, new",
     [
-        ("read.report", "masonry_view.report"),
-        ("read.bilinear", "masonry_capacity.bilinear_curve"),
+        ("figures", "masonry_view.figures"),
         ("study", "masonry_study"),
         ("study.report", "masonry_study.report"),
     ],
@@ -99,10 +100,16 @@ def test_an_old_program_says_the_new_one(old, new):
     assert (done.returncode, done.stderr) == (2, said)
 
 
-@mark.parametrize("old, new", [("study", "masonry_study"), ("read.frames", "masonry.numbers")])
+@mark.parametrize("old, new", moved.MODULES.items())
 def test_an_old_import_says_the_new_one(old, new):
-    with raises(ModuleNotFoundError, match=f"^masonry.{old[:4]}.* has moved: it is .*{new}"):
-        __import__(f"masonry.{old}")
+    with raises(ModuleNotFoundError, match=f"^{old} has moved: it is {new} now"):
+        __import__(old)
+    assert importlib.util.find_spec(new)
+
+
+def test_an_old_name_says_the_new_one():
+    with raises(ModuleNotFoundError, match="masonry.columns has moved: it is masonry.numbers"):
+        from masonry import columns  # noqa: F401
 
 
 def test_a_module_that_never_was_is_missing_as_others():

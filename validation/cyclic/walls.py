@@ -6,7 +6,7 @@ figures.
 /usr/bin/python3 validation/cyclic/walls.py --walls comp4 --laws softening   # one wall, one law
 
 The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same
-for both laws as long as the load grows, and cycles, each amplitude twice. ``masonry.numbers.loops``
+for both laws as long as the load grows, and cycles, amplitudes twice. ``masonry.numbers.loops``
 defines the numbers of a cycle.
 
 - ``loops_WALL.png``: the loops of both laws, with the monotonic curve in both directions

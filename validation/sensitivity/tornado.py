@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from studies import RESULTS, done, nameOf, readCase, runMissing, table
 
-#: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 19
+#: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 22
 #: mm and then holds.
 WALLS = {
     "COMP-4": ("wall_comp4", ["--rate", "40", "--vtk-every", "100"]),

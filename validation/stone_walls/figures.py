@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of the stone walls.
 
-/usr/bin/python3 validation/stone_walls/figures.py peaks STUDY CYCLES
+/usr/bin/python3 validation/stone_walls/figures.py peaks STUDY
 /usr/bin/python3 validation/stone_walls/figures.py opened
 /usr/bin/python3 validation/stone_walls/figures.py cracks RUN [RUN ...]
 

@@ -156,7 +156,9 @@ def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:
     :param upright: which upright joints are cracked, bool (courses, columns - 1)
     """
     lines = np.arange(upright.shape[1])
-    starts, reached, reach = np.empty((0, 2), int), np.empty((0, len(lines)), bool), 0
+    starts: np.ndarray = np.empty((0, 2), int)
+    reached: np.ndarray = np.empty((0, len(lines)), bool)
+    reach = 0
     for course in reversed(range(len(upright))):
         if len(starts):
             run = np.append(0, np.cumsum(~bed[course, 1:-1]))

@@ -118,8 +118,8 @@ Damping = Annotated[float, damping]
 _ROWS = (
     # choices: masonry.run.presets
     Option("preset", harmless=True).means(
-        "blocks, divisions, points, rate, damping and mass scaling with a promise of error and"
-        " time; an option given beside it wins, and drops the promise; bound is limit analysis"
+        "blocks, divisions, points, rate, damping and mass scaling for speed or accuracy; fast has"
+        " a promise of its error, which an option given beside it drops; bound is limit analysis"
         " alone, without a run"
     ),
     Option("accuracy", number("%", 0, 50, above=True), value="PERCENT", harmless=True).means(
@@ -217,8 +217,8 @@ _ROWS = (
     ),
     Option("resume", folder, value="DIR", ofStudy=False, ofScript=False).means(
         "go on from the checkpoint in this folder of results, with the options of its run; only"
-        " --until, --checkpoint-every, --vtk-every and --no-vtk can be changed, and --history can"
-        " be extended"
+        " --until, --checkpoint-every, --vtk-every, --no-vtk and --lean can be changed, and"
+        " --history can be extended"
     ),
     Option("vtk_every", millimetres, 1.0, "MM", harmless=True, free=True, ofStudy=False).means(
         "displacement between ParaView frames [mm]; with --history the path between them"

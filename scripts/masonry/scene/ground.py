@@ -134,7 +134,7 @@ def readRecord(
                 " accelerations one after the other: say every= and unit="
             )
         accelerations = found.values
-    values = np.asarray(accelerations, float)
+    values: Any = np.asarray(accelerations, float)
     if len(values) < 2 or not np.isfinite(values).all():
         raise Refused("a record needs two finite accelerations at least")
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
