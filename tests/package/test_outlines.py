@@ -229,6 +229,11 @@ def test_paths_of_svg_in_groups(tmp_path):
         ("a.csv", "s,x,y,z\ns,0,0,0", "the columns s, x, y, z must be a name, x and z"),
         ("a.svg", '<svg><rect width="50%" height="2"/></svg>', "width '50%' is no length"),
         ("a.svg", '<svg><rect width="1e300" height="1e300"/></svg>', "more than 2000000 points"),
+        (
+            "a.csv",
+            "s,0,0\ns,480,0\ns,480,280",
+            "a stone of 480 m must be at most 1000 times mortar",
+        ),
         ("a.svg", '<svg><rect id="r" width="-1" height="1"/></svg>', "rect r: its width or height"),
         ("a.svg", '<svg><polygon id="p" points="0,0 1,0 1"/></svg>', "p: its points are not pairs"),
         ("a.svg", '<svg><path id="p" d="M0,0 L4"/></svg>', "path p: 'L' takes 2 numbers each"),
@@ -336,7 +341,8 @@ def test_entities_of_dxf_that_draw_one_stone(tmp_path, capsys, draw, unit, scale
 def test_what_dxf_has_of_a_wall_and_cannot_be_read_is_named(tmp_path):
     document = ezdxf.new("R2010")
     document.modelspace().add_lwpolyline(outline(), close=True)
-    document.modelspace().add_mesh()
+    with document.modelspace().add_mesh().edit_data() as mesh:
+        mesh.vertices, mesh.faces = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]
     document.saveas(tmp_path / "a.dxf")
     with raises(ValueError, match="1 MESH would be left out: make them outlines"):
         bricks.fromOutlines(tmp_path / "a.dxf", thickness=0.3, mortar=0.025)

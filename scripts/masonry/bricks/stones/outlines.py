@@ -23,6 +23,7 @@ from .joint_lines import straightened
 SPACING = 0.25  # of points along an outline, over the tolerance [-]
 VOID = -1  # label outside stones
 MAX_POINTS = 2_000_000
+MAX_STONE = 1000  # length or height of a stone over the mortar; such a one takes a minute
 FAR = 10  # sizes of a drawing that it may be away from its origin without a note
 SKEWED = 1e-9  # third moment of the stones, over the size, from which on a drawing is one-sided
 
@@ -98,7 +99,7 @@ def fromOutlines(
     one brick, whose joint is ``crack``. A mirrored drawing gives the mirrored wall.
 
     :param thickness: of the wall [m]
-    :param mortar: largest thickness of a joint [m]
+    :param mortar: largest thickness of a joint [m]; a stone is at most 1000 times as large
     :param scale: metres in one unit of the file; None: what the file says (``$INSUNITS`` of DXF,
         the width of SVG in mm or the like), else 1
     :param tolerance: largest distance by which a joint moves when short ones are closed, lines
@@ -117,7 +118,7 @@ def fromOutlines(
         outline.ring = (outline.ring - corner) * scale
     if (far := abs(corner).max() * scale) > FAR * np.max([o.ring.max() for o in drawn]):
         say(f"note: fromOutlines: the drawing is {far:.6g} m from its origin; it is moved there")
-    _limit(drawn, SPACING * fine)
+    _limit(drawn, SPACING * fine, mortar)
     stones = _checked(str(path), drawn, fine, mend)
     back = _mirrored(stones)
     points = _sampled(stones, SPACING * fine)
@@ -270,16 +271,21 @@ def _along(ring, step):
     return np.concatenate(places), np.concatenate(normals)
 
 
-def _limit(stones, step):
+def _limit(stones, step, mortar):
+    problems = []
+    largest = max(np.ptp(stone.ring, axis=0).max() for stone in stones)
+    if largest > MAX_STONE * mortar:
+        problems.append(
+            f"a stone of {largest:.3g} m must be at most {MAX_STONE} times mortar, {mortar:g} m"
+        )
     length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)
     if not length / step <= MAX_POINTS:
-        refuse(
-            "fromOutlines",
-            [
-                f"outlines of {length:.3g} m and a tolerance of {step / SPACING:g} m need more than"
-                f" {MAX_POINTS} points: is scale, metres in one unit of the file, right?"
-            ],
+        problems.append(
+            f"outlines of {length:.3g} m and a tolerance of {step / SPACING:g} m need more than"
+            f" {MAX_POINTS} points"
         )
+    right = "is scale, metres in one unit of the file, right?"
+    refuse("fromOutlines", [f"{problem}: {right}" for problem in problems])
 
 
 def _sampled(stones, step):
