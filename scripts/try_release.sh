@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Tries in a fresh Debian both commands of README.md, then the Debian package of the last commit: built of what it says
-# that it needs, installed, tested by autopkgtest. Prints outcome, time and peak in a line for each. Fails if one of them
-# does. A release whose own packages cannot be had or installed today is a note: forky moves.
+# Tries in a fresh Debian both commands of README.md, tests of what uses libraries, then the Debian package of the last
+# commit: built of what it says that it needs, installed, tested by autopkgtest. Prints outcome, time and peak in a line
+# for each. Fails if one of them does. A release whose own packages cannot be had or installed today is a note: forky moves.
 #
 #   bash scripts/try_release.sh bookworm|trixie|forky...      in a temporary folder, which is removed at the end
 #   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
 #   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of this machine
 #
-# Needs root, debootstrap, dpkg-dev, 6 GB in FOLDER and a quarter of an hour for a release. What is tried is this working
+# Needs root, debootstrap, dpkg-dev, 8 GB in FOLDER and twenty minutes for a release. What is tried is this working
 # tree.
 set -euo pipefail
 NO_PACKAGES=100 # exit status of scripts/setup.sh if apt-get fails
+# Tests of what uses libraries that differ between releases: OpenTURNS, ezdxf, matplotlib, notebooks, NumPy's type hints.
+LIBRARIES="tests/study tests/package tests/view tests/gates/test_hints.py -m 'not long' --numprocesses $(nproc)"
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 (($#)) || { sed -n '3,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
@@ -83,10 +85,12 @@ for release in "$@"; do
     [[ -f $json ]] && peak=$(chroot "$root" /usr/bin/python3 -c \
         'import json, sys; print(json.load(sys.stdin)["peak_base_shear_kN"])' <"$json")
     lines+=("$release|$yade|bash scripts/run.sh wall_comp4|$outcome|$seconds|$peak")
-    inside bash scripts/test.sh quick
-    [[ $outcome != "exit $NO_PACKAGES" ]] || { skip "packages for tests cannot be had or installed"; continue; }
-    passed=$(tail -n 1 "$folder/$release.log")
-    lines+=("$release|$yade|bash scripts/test.sh quick|$outcome: $passed|$seconds|-")
+    for tests in quick "$LIBRARIES"; do
+        inside "bash scripts/test.sh $tests"
+        [[ $outcome != "exit $NO_PACKAGES" ]] || { skip "packages for tests cannot be had or installed"; continue 2; }
+        passed=$(tail -n 1 "$folder/$release.log")
+        lines+=("$release|$yade|bash scripts/test.sh $tests|$outcome: $passed|$seconds|-")
+    done
     # the package is tried alone, without what setup.sh has installed
     mkdir "$root/root/package"
     find build/package -name 'yade-masonry_*' -exec cp -t "$root/root/package" {} +

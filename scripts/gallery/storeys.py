@@ -18,6 +18,7 @@ door, window, small = (
 )
 ground = bricks.Storey(2.4, front=[door], back=[window], left=[small], span="x")
 upper = bricks.Storey(2.4, front=[window], back=[window], span="y", ring=0.2)
+table, rows = {}, ["towards  mass off   in the run    bound"]
 
 
 def push(side, off):
@@ -47,7 +48,6 @@ def push(side, off):
     rows.append(f"{side:>8} {off:8.0%} {scene.factor:8.3f} g {bound:>10}")
 
 
-table, rows = {}, ["towards  mass off   in the run    bound"]
 for side in TOWARDS:
     push(side, 0)
 weakest = min(table, key=lambda case: table[case])[0]

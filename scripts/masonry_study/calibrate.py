@@ -334,8 +334,7 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
             walk = ot.Normal([0.0] * size, ot.CovarianceMatrix(steps.tolist()))
             chain = ot.RandomWalkMetropolisHastings(density, cube, start, walk)
             chain.setBurnIn(DRAWS)
-            chain.setThinning(thinning)
-            drawn = np.array(chain.getSample(DRAWS))
+            drawn = np.array(chain.getSample(DRAWS * thinning))[thinning - 1 :: thinning]
             start = drawn[-1].tolist()
             steps = STEP**2 / size * np.atleast_2d(np.cov(drawn.T)) + 1e-10 * np.eye(size)
     return model.low + (model.high - model.low) * drawn
