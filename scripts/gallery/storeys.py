@@ -18,7 +18,8 @@ door, window, small = (
 )
 ground = bricks.Storey(2.4, front=[door], back=[window], left=[small], span="x")
 upper = bricks.Storey(2.4, front=[window], back=[window], span="y", ring=0.2)
-table, rows = {}, ["towards  mass off   in the run    bound"]
+table: dict[tuple[str, float], float] = {}
+rows = ["towards  mass off   in the run    bound"]
 
 
 def push(side, off):

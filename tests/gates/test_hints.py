@@ -128,7 +128,7 @@ base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
 #: Lines of a script, and what mypy must say to them.
 WRONG = {
     'scene.push(top, "5")': 'has incompatible type "str"',
-    "scene.push(5.0)": 'has incompatible type "float"; expected "Union[Target',
+    "scene.push(5.0)": 'has incompatible type "float"; expected',
     "scene.press(top)": "No overload variant",
     'scene.press(top, 0.3e6, riding="x")': "No overload variant",
     'scene.platen("top", hight=0.2)': 'did you mean "height"?',
