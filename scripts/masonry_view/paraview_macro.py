@@ -45,6 +45,12 @@ def drawn(source, view, colour, width=None):
     return shown
 
 
+def shift(shown, vector):
+    """Move what is drawn; ParaView 5.13 has another name for it."""
+    known = shown.ListProperties()
+    setattr(shown, "Translation" if "Translation" in known else "Position", vector)
+
+
 def build(view, run):
     """Fill a view with a run."""
     blocks, towards = moved(run, "blocks"), run["towards"]
@@ -58,7 +64,7 @@ def build(view, run):
         drawn(part, view, colours[name])
         edges = pv.FeatureEdges(Input=pv.ExtractSurface(Input=part), FeatureAngle=20)
         edges.ManifoldEdges = edges.NonManifoldEdges = edges.BoundaryEdges = 0
-        drawn(edges, view, colours["mortar"], 1).Position = nearer
+        shift(drawn(edges, view, colours["mortar"], 1), nearer)
 
     # joints on the faces of both of their blocks
     isOpen = f"(opening > {run['crack']}) * (opening > 0.5 * mag(slide))"
@@ -76,18 +82,19 @@ def build(view, run):
                 drawn(cells, view, colours["slid"]),
                 drawn(rims, view, colours["slid"], 3),
             ):
-                thing.Position = nearer
+                shift(thing, nearer)
                 if name == "open joints":
                     thing.ColorArrayName, thing.LookupTable = ["CELLS", "opening [mm]"], ramp
     if os.path.exists(os.path.join(run["folder"], "connectors.pvd")):
-        drawn(moved(run, "connectors"), view, colours["mortar"], 4).Position = nearer
+        shift(drawn(moved(run, "connectors"), view, colours["mortar"], 4), nearer)
     ramp.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]
     bar = pv.GetScalarBar(ramp, view)
     bar.Title, bar.ComponentTitle, bar.Visibility = "opening [mm]", "", 1
     bar.TitleColor = bar.LabelColor = (0, 0, 0)
     bar.WindowLocation, bar.Position = "Any Location", (0.87, 0.28)
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.45, 14
-    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.3g", "%.3g"
+    number = "{:.3g}" if pv.GetParaViewVersion() >= (6, 1) else "%.3g"
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, number, number
 
     time = pv.AnnotateTimeFilter(Input=blocks, Format="{time:.3f} s")
     title = pv.Text(Text=run["title"])

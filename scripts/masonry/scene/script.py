@@ -90,7 +90,8 @@ def either(
         present: Any = stage if scene.model else describes
         return present(scene, *args, **settings)
 
-    command.__doc__ = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    first, later = map(inspect.getdoc, (describes, stage))
+    command.__doc__ = f"{first}\n\nAfter the first stage: {later}"
     typed: Any = command
     return typed
 
