@@ -129,6 +129,16 @@ def functionsByName(app, what, name, thing, options, signature, returns):
     return plain.replace("<lambda>", "lambda"), returns
 
 
+def withoutValidators(app, domain, kind, content):
+    """Types of arguments without the validators that Sphinx names since version 7."""
+    innermost = re.compile(r"Annotated\[((?:(?!Annotated)[^<>])*), <function \S+ at 0x[0-9a-f]+>\]")
+    for text in list(content.findall(nodes.Text)):
+        plain, count = text.astext(), 1
+        while count:
+            plain, count = innermost.subn(r"\1", plain)
+        text.parent.replace(text, nodes.Text(plain))
+
+
 def withoutFieldsOfTuples(app, what, name, thing, skip, options):
     """Leave out what Python itself says of the fields of a named tuple: their numbers."""
     return skip or type(thing).__name__ == "_tuplegetter"
@@ -147,3 +157,4 @@ def setup(app):
     app.connect("autodoc-process-docstring", typesFromChecks)
     app.connect("autodoc-skip-member", withoutFieldsOfTuples)
     app.connect("autodoc-process-signature", functionsByName)
+    app.connect("object-description-transform", withoutValidators, priority=600)  # types are there

@@ -4,7 +4,7 @@ wall below stands.
 
 The triangle is 0.22 m thick, in a weak lime mortar, so what falls is pieces that hold together
 until they land. About 45 stones fall; impacts decide how many exactly. Without damping. It takes
-under two minutes.
+about 100 s.
 """
 
 import math

@@ -130,7 +130,7 @@ def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     tilt = text.index("degrees (float) – a number above 0 and below 90 degrees")
     # in the order of the arguments
     assert tilt < text.index("horizontal direction in which the structure leans")
-    headings = re.findall(r"(.+)#\n", page.text)
+    headings = re.findall(r"(.+)[#¶]\n", page.text)
     assert "Loads after the first stage" in headings
     assert all(len(heading) < 90 or "(" in heading for heading in headings)
 
