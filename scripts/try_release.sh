@@ -9,7 +9,7 @@
 #   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of this machine
 #
-# Needs root, debootstrap, dpkg-dev, 8 GB in FOLDER and twenty minutes for a release. What is tried is this working
+# Needs root, debootstrap, dpkg-dev, 8 GB in FOLDER and a quarter of an hour for a release. What is tried is this working
 # tree.
 set -euo pipefail
 NO_PACKAGES=100 # exit status of scripts/setup.sh if apt-get fails

@@ -130,7 +130,7 @@ def functionsByName(app, what, name, thing, options, signature, returns):
 
 
 def withoutValidators(app, domain, kind, content):
-    """Types of arguments without the validators that Sphinx names since version 7."""
+    """Types of arguments without their validators, which Sphinx 8 names."""
     innermost = re.compile(r"Annotated\[((?:(?!Annotated)[^<>])*), <function \S+ at 0x[0-9a-f]+>\]")
     for text in list(content.findall(nodes.Text)):
         plain, count = text.astext(), 1
@@ -157,4 +157,5 @@ def setup(app):
     app.connect("autodoc-process-docstring", typesFromChecks)
     app.connect("autodoc-skip-member", withoutFieldsOfTuples)
     app.connect("autodoc-process-signature", functionsByName)
-    app.connect("object-description-transform", withoutValidators, priority=600)  # types are there
+    # autodoc adds the types at priority 500
+    app.connect("object-description-transform", withoutValidators, priority=600)

@@ -124,8 +124,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double softer = 1 / (1 + std::abs(dice.factor()));
     const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
     const PiecewiseEquations equations = law->equations(k);
+    // A shift is infinite over a stiffness of 1e-309 Pa/m.
     if (std::isfinite(equations.normalShift)) check(law->tension(), equations.normalShift);
-    if (std::isfinite(equations.shearShift)) check(law->shear(), equations.shearShift); // not over a ks of 1e-309 Pa/m
+    if (std::isfinite(equations.shearShift)) check(law->shear(), equations.shearShift);
     for (const auto& sentence : law->snapsBack(k, 0.1))
         PROMISE(!sentence.empty());
     ColumnsSideBySide<PiecewiseLaw> columns(law, k, 1, 1);

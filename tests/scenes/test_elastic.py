@@ -41,9 +41,8 @@ def test_points_that_open_without_loss_are_in_the_balance_of_a_solution(tmp_path
     scene.hold((0.11, 0.05, 0.12))
     scene.settle()
     assert scene.running.state.stages[0]["solved"]
-    assert (
-        abs(scene.model.energy.balance()["error"]) < 1e-5
-    )  # 0.017 if forces after a move do not count
+    # the error is 0.017 if forces after a move do not count
+    assert abs(scene.model.energy.balance()["error"]) < 1e-5
     scene.finish()
 
 

@@ -6,8 +6,8 @@ figures.
 /usr/bin/python3 validation/cyclic/walls.py --walls comp4 --laws softening   # one wall, one law
 
 The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same
-for both laws as long as the load grows, and cycles, amplitudes twice. ``masonry.numbers.loops``
-defines the numbers of a cycle.
+for both laws as long as the load grows, and cycles, most amplitudes twice.
+``masonry.numbers.loops`` defines the numbers of a cycle.
 
 - ``loops_WALL.png``: the loops of both laws, with the monotonic curve in both directions
 - ``degradation.png``: over the amplitude, stiffness from peak to peak, equivalent damping, and what
